@@ -1,0 +1,32 @@
+# make            builds build/release/bin/kropla
+# make demo       runs the droplet case into demo/ and draws its pictures
+# make test       builds and runs all tests
+# make bench      builds and runs the benchmarks
+# Each installs the Debian packages that are missing.
+
+.PHONY: all demo test bench packages configure clean
+
+all: configure
+	cmake --build --preset release
+
+packages:
+	tools/install-packages
+
+configure: packages
+	@cmake --preset release >build-configure.log 2>&1 || { cat build-configure.log; rm build-configure.log; exit 1; }
+	@rm -f build-configure.log
+
+demo: all
+	build/release/bin/kropla run cases/droplet.toml --out demo/droplet
+	tools/draw-pictures demo/droplet demo/pictures
+
+test: all
+	ctest --test-dir build/release --output-on-failure -j2
+
+bench: packages
+	cmake --preset bench
+	cmake --build --preset bench
+	build/bench/bin/kropla_bench
+
+clean:
+	rm -rf build demo

@@ -1,0 +1,4 @@
+list(APPEND KROPLA_MESH_FILES
+    base/tetrahedron.cpp
+    base/predicates.cpp
+)

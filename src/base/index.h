@@ -1,0 +1,67 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <ranges>
+#include <vector>
+
+namespace kropla {
+
+/// A number that names one thing of one kind: `Index<struct VertexTag>` and `Index<struct TetTag>` do not mix.
+/// The default names nothing; 32 bits, so that a mesh holds at most 2^31 - 1 things of a kind.
+template <class Tag>
+struct Index {
+    std::int32_t value = -1;
+
+    constexpr Index() = default;
+    constexpr explicit Index(std::int32_t v) : value(v) {}
+    constexpr explicit Index(std::size_t v) : value(static_cast<std::int32_t>(v)) {}
+
+    [[nodiscard]] constexpr bool exists() const { return value >= 0; }
+    auto operator<=>(const Index&) const = default;
+};
+
+/// A std::vector that is indexed by one kind of Index only.
+template <class I, class T>
+class Array {
+public:
+    Array() = default;
+    explicit Array(std::size_t size, const T& value = T{}) : items_(size, value) {}
+    Array(std::initializer_list<T> items) : items_(items) {}
+
+    T& operator[](I i) { return items_[static_cast<std::size_t>(i.value)]; }
+    const T& operator[](I i) const { return items_[static_cast<std::size_t>(i.value)]; }
+
+    [[nodiscard]] std::size_t size() const { return items_.size(); }
+    [[nodiscard]] bool empty() const { return items_.empty(); }
+    [[nodiscard]] const T* data() const { return items_.data(); }
+    T* data() { return items_.data(); }
+
+    /// Appends `item` and returns the index it got.
+    I push_back(const T& item) {
+        items_.push_back(item);
+        return I(items_.size() - 1);
+    }
+    void resize(std::size_t size, const T& value = T{}) { items_.resize(size, value); }
+    void reserve(std::size_t size) { items_.reserve(size); }
+
+    /// All indices, in order: `for (Tet t : mesh.tets.indices())`.
+    [[nodiscard]] auto indices() const {
+        return std::views::iota(std::int32_t{0}, static_cast<std::int32_t>(items_.size())) |
+               std::views::transform([](std::int32_t i) { return I(i); });
+    }
+
+    auto begin() const { return items_.begin(); }
+    auto end() const { return items_.end(); }
+    auto begin() { return items_.begin(); }
+    auto end() { return items_.end(); }
+
+    bool operator==(const Array&) const = default;
+
+private:
+    std::vector<T> items_;
+};
+
+}  // namespace kropla

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "domain/shape.h"
+#include "mesh/mesh.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace kropla {
+
+/// The box around everything. Its faces are the patches 0 ... 5: x min, x max, y min, y max, z min, z max.
+struct Box {
+    Vec3 min, max;  // [m]
+};
+
+/// Where a body is at time t [s].
+using Motion = std::function<Pose(double t)>;
+
+struct Body {
+    std::string name;
+    Shape shape;                                     // at t = 0 with the motion's displacement not yet applied
+    Motion motion = [](double) { return Pose{}; };
+};
+
+/// The target edge length at distance R from the nearest body: min(far, surface + growth * R).
+struct SizeField {
+    double surface = 2e-4;  // [m]
+    double growth = 0.1;    // [-] rise per metre of distance, 0 ... 1
+    double far = 8e-4;      // [m], at least surface
+};
+
+/// What is meshed: body i is region i + 1, the rest of the box is region 0.
+struct Domain {
+    Box box;
+    std::vector<Body> bodies;
+    SizeField size;
+};
+
+[[nodiscard]] inline Region region_of_body(std::size_t body) { return Region(body + 1); }
+
+/// The body as it stands at time t.
+[[nodiscard]] Shape shape_at(const Body& body, double t);
+
+/// The domain frozen at one time: shapes in place, ready for many questions about distance and size.
+struct Snapshot {
+    Box box;
+    SizeField size;
+    std::vector<Shape> shapes;
+};
+[[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
+
+/// The distance from x to the nearest body's surface [m], from either side; infinite without bodies.
+[[nodiscard]] double distance_to_bodies(const Snapshot& at, const Vec3& x);
+/// The target edge length at x [m].
+[[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
+
+/// Throws DomainError, saying which bodies, where, the distance found and the size that would do, if at time t a body
+/// is outside the box, or two bodies overlap, or a gap is too narrow for the size asked (below `least_gap` surface
+/// sizes), or the surface size is too coarse for a body's curvature.
+void check_placement(const Domain& domain, double t, double least_gap);
+
+/// Throws DomainError if between `start` and `end`, looked at `samples` times, a motion is not finite, or takes a
+/// body out of the box or into another; says which, when and where.
+void check_paths(const Domain& domain, double start, double end, int samples);
+
+}  // namespace kropla

@@ -1,0 +1,2 @@
+list(APPEND KROPLA_MESH_FILES
+)

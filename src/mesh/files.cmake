@@ -1,0 +1,7 @@
+list(APPEND KROPLA_MESH_FILES
+    mesh/mesh.cpp
+    mesh/topology.cpp
+    mesh/cavity.cpp
+    mesh/quality.cpp
+    mesh/verify.cpp
+)

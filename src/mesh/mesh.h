@@ -1,0 +1,67 @@
+#pragma once
+
+#include "base/index.h"
+#include "base/vec3.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace kropla {
+
+using Vertex = Index<struct VertexTag>;
+using Tet = Index<struct TetTag>;
+using Region = Index<struct RegionTag>;  ///< a named part of the volume: 0 the surroundings, 1, 2, ... the bodies
+using Patch = Index<struct PatchTag>;    ///< a named part of the boundary: 0 ... 5 the faces of the box
+
+inline constexpr Region surroundings{0};
+
+/// A tetrahedral mesh as a value: copy it to keep it. Its invariant is `verify`; `replace_cells` is the only function
+/// that changes its connectivity. Interfaces are where regions differ; nothing else records them.
+///
+/// Removed cells and vertices leave free slots, which later ones take, so that nothing else is renumbered:
+/// pass over them with `alive`.
+struct Mesh {
+    Array<Vertex, Vec3> position;              // [m]
+    Array<Vertex, Tet> tet_at;                 // one tet of the vertex's ball, where a query starts; none: free slot
+    Array<Tet, std::array<Vertex, 4>> tets;    // det(v1-v0, v2-v0, v3-v0) > 0; a free slot has no vertices
+    Array<Tet, std::array<Tet, 4>> neighbour;  // across the facet opposite corner i, or none
+    Array<Tet, std::array<Patch, 4>> patch;    // boundary patch of that facet, where there is no neighbour
+    Array<Tet, Region> region;
+    std::vector<Tet> free_tets;
+    std::vector<Vertex> free_vertices;
+
+    bool operator==(const Mesh&) const = default;
+};
+
+[[nodiscard]] inline bool alive(const Mesh& mesh, Tet t) { return mesh.tets[t][0].exists(); }
+[[nodiscard]] inline bool alive(const Mesh& mesh, Vertex v) { return mesh.tet_at[v].exists(); }
+
+[[nodiscard]] inline int count_tets(const Mesh& mesh) {
+    return static_cast<int>(mesh.tets.size() - mesh.free_tets.size());
+}
+[[nodiscard]] inline int count_vertices(const Mesh& mesh) {
+    return static_cast<int>(mesh.position.size() - mesh.free_vertices.size());
+}
+
+/// A facet of the boundary, by its vertices in any order, and the patch it belongs to.
+struct BoundaryFacet {
+    std::array<Vertex, 3> vertices;
+    Patch patch;
+};
+
+/// Builds a mesh from cells by their vertices; neighbours are found by sorting facets. Boundary facets that are not
+/// in `boundary` get patch 0. Vertices of no tet become free slots. The tets are not checked: see `verify`.
+/// Throws FileError, naming the cell, if a facet has more than two cells or a vertex does not exist.
+[[nodiscard]] Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> tets,
+                             Array<Tet, Region> region, std::span<const BoundaryFacet> boundary = {});
+
+/// The mesh without free slots, and where each of its vertices and cells was before.
+struct Compacted {
+    Mesh mesh;
+    Array<Vertex, Vertex> old_vertex;
+    Array<Tet, Tet> old_tet;
+};
+[[nodiscard]] Compacted compact(const Mesh& mesh);
+
+}  // namespace kropla

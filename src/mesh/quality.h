@@ -1,0 +1,30 @@
+#pragma once
+
+#include "mesh/mesh.h"
+
+#include <span>
+
+namespace kropla {
+
+/// The aspect ratio R/r of a tet (3 is perfect, infinite if not positively oriented).
+[[nodiscard]] double aspect_ratio(const Mesh& mesh, Tet t);
+[[nodiscard]] double volume(const Mesh& mesh, Tet t);  // [m^3]
+[[nodiscard]] Vec3 centroid(const Mesh& mesh, Tet t);
+
+/// The largest aspect ratio among the tets; 0 for none.
+[[nodiscard]] double worst_aspect_ratio(const Mesh& mesh, std::span<const Tet> tets);
+
+/// What is reported of a mesh as a whole. Dihedral angles in degrees.
+struct QualitySummary {
+    int tets = 0;
+    int vertices = 0;
+    double max_aspect_ratio = 0, p999_aspect_ratio = 0, mean_aspect_ratio = 0;
+    double min_dihedral = 180, max_dihedral = 0;
+    Tet worst;  ///< the tet of the largest aspect ratio
+};
+/// Over all tets, or those of one region.
+[[nodiscard]] QualitySummary summarise_quality(const Mesh& mesh, Region only = {});
+
+[[nodiscard]] double region_volume(const Mesh& mesh, Region region);  // [m^3]
+
+}  // namespace kropla
