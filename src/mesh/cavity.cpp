@@ -1,0 +1,187 @@
+#include "mesh/cavity.h"
+
+#include "mesh/topology.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace kropla {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// A facet of a removed or of an added tet.
+struct Side {
+    std::array<Vertex, 3> key;  // ascending
+    int corner;
+    bool is_added;
+    std::size_t which;  // of the removed or of the added tets
+};
+
+/// A facet of an added tet and what lies across it.
+struct Join {
+    std::size_t added;
+    int corner;
+    Tet neighbour;
+    int neighbour_corner;  // whose neighbour is the added tet; -1: not to be told (it is an added tet too)
+    Patch patch;
+};
+
+std::array<Vertex, 3> ascending(const std::array<Vertex, 4>& v, int corner) {
+    const auto& c = tet_facets[at(corner)];
+    std::array<Vertex, 3> key = {v[at(c[0])], v[at(c[1])], v[at(c[2])]};
+    if (key[1] < key[0]) std::swap(key[0], key[1]);
+    if (key[2] < key[1]) std::swap(key[1], key[2]);
+    if (key[1] < key[0]) std::swap(key[0], key[1]);
+    return key;
+}
+
+std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity) {
+    std::vector<Side> sides;
+    sides.reserve(4 * (cavity.removed.size() + cavity.added.size()));
+    for (int corner = 0; corner < 4; ++corner) {
+        for (std::size_t i = 0; i < cavity.removed.size(); ++i)
+            sides.push_back({ascending(mesh.tets[cavity.removed[i]], corner), corner, false, i});
+        for (std::size_t i = 0; i < cavity.added.size(); ++i)
+            sides.push_back({ascending(cavity.added[i].vertices, corner), corner, true, i});
+    }
+    std::ranges::sort(sides, [](const Side& a, const Side& b) {
+        if (a.key != b.key) return a.key < b.key;
+        if (a.is_added != b.is_added) return b.is_added;
+        return a.which < b.which;
+    });
+    return sides;
+}
+
+/// The slots that the added tets will take: those of removed tets, then free ones, then new ones.
+std::vector<Tet> slots(const Mesh& mesh, const Cavity& cavity) {
+    std::vector<Tet> names;
+    names.reserve(cavity.added.size());
+    const std::size_t spare = mesh.free_tets.size();
+    for (std::size_t i = 0; i < cavity.added.size(); ++i) {
+        const std::size_t beyond = i - std::min(i, cavity.removed.size());
+        if (i < cavity.removed.size()) names.push_back(cavity.removed[i]);
+        else if (beyond < spare) names.push_back(mesh.free_tets[spare - 1 - beyond]);
+        else names.push_back(Tet(mesh.tets.size() + beyond - spare));
+    }
+    return names;
+}
+
+/// Joins the sides of one facet. Before, the facet was inside the cavity (two removed sides), around it (one) or new
+/// (none); after, it is inside (two added sides), around it (one) or gone (none).
+void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> before, std::span<const Side> after,
+                std::span<const Tet> names, std::vector<Join>& joins) {
+    if (before.size() > 2 || after.size() > 2 || (before.size() == 1 && after.size() == 2))
+        throw std::logic_error("replace_cells: a facet of the cavity is used too often");
+    const auto outer = [&](const Side& s) { return Facet{cavity.removed[s.which], s.corner}; };
+    if (after.size() == 2) {
+        joins.push_back({after[0].which, after[0].corner, names[after[1].which], -1, Patch{}});
+        joins.push_back({after[1].which, after[1].corner, names[after[0].which], -1, Patch{}});
+    } else if (after.size() == 1 && before.size() == 1) {
+        const Facet f = outer(before[0]);
+        const Tet n = mesh.neighbour[f.tet][at(f.corner)];
+        joins.push_back({after[0].which, after[0].corner, n, n.exists() ? mirror_corner(mesh, f) : -1,
+                         mesh.patch[f.tet][at(f.corner)]});
+    } else if (after.size() == 1) {
+        const Patch patch = cavity.added[after[0].which].patch[at(after[0].corner)];
+        if (!patch.exists()) throw std::logic_error("replace_cells: an added facet has no other side and no patch");
+        joins.push_back({after[0].which, after[0].corner, Tet{}, -1, patch});
+    } else if (before.size() == 1) {
+        const Facet f = outer(before[0]);
+        if (mesh.neighbour[f.tet][at(f.corner)].exists())
+            throw std::logic_error("replace_cells: a facet around the cavity would be lost");
+    }
+}
+
+std::vector<Join> join_facets(const Mesh& mesh, const Cavity& cavity, std::span<const Tet> names) {
+    const auto sides = sides_by_key(mesh, cavity);
+    std::vector<Join> joins;
+    joins.reserve(4 * cavity.added.size());
+    const auto same_facet = [](const Side& a, const Side& b) { return a.key == b.key; };
+    for (auto begin = sides.begin(); begin != sides.end();) {
+        auto added = begin, end = begin;
+        while (end != sides.end() && same_facet(*begin, *end)) {
+            if (!end->is_added) added = end + 1;
+            ++end;
+        }
+        join_facet(mesh, cavity, {begin, added}, {added, end}, names, joins);
+        begin = end;
+    }
+    return joins;
+}
+
+void insert_vertices(Mesh& mesh, const std::vector<Vec3>& places) {
+    for (const Vec3& place : places) {
+        if (mesh.free_vertices.empty()) {
+            mesh.position.push_back(place);
+            mesh.tet_at.push_back(Tet{});
+        } else {
+            mesh.position[mesh.free_vertices.back()] = place;
+            mesh.free_vertices.pop_back();
+        }
+    }
+}
+
+void clear_removed(Mesh& mesh, const Cavity& cavity, std::vector<Vertex>& touched) {
+    for (Tet t : cavity.removed)
+        for (Vertex v : mesh.tets[t]) {
+            mesh.tet_at[v] = Tet{};
+            touched.push_back(v);
+        }
+    for (Tet t : cavity.removed) {
+        mesh.tets[t] = {};
+        mesh.neighbour[t] = {};
+        mesh.patch[t] = {};
+    }
+}
+
+void write_added(Mesh& mesh, const Cavity& cavity, std::span<const Tet> names) {
+    const std::size_t reused = std::min(cavity.added.size(), cavity.removed.size());
+    const std::size_t taken = std::min(cavity.added.size() - reused, mesh.free_tets.size());
+    mesh.free_tets.resize(mesh.free_tets.size() - taken);
+    const std::size_t size = mesh.tets.size() + cavity.added.size() - reused - taken;
+    mesh.tets.resize(size);
+    mesh.neighbour.resize(size);
+    mesh.patch.resize(size);
+    mesh.region.resize(size);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        mesh.tets[names[i]] = cavity.added[i].vertices;
+        mesh.region[names[i]] = cavity.added[i].region;
+        for (Vertex v : cavity.added[i].vertices) mesh.tet_at[v] = names[i];
+    }
+    mesh.free_tets.insert(mesh.free_tets.end(), cavity.removed.begin() + static_cast<std::ptrdiff_t>(reused),
+                          cavity.removed.end());
+}
+
+void free_lost_vertices(Mesh& mesh, std::vector<Vertex>& touched) {
+    std::erase_if(touched, [&](Vertex v) { return alive(mesh, v); });
+    std::ranges::sort(touched);
+    const auto repeated = std::ranges::unique(touched);
+    mesh.free_vertices.insert(mesh.free_vertices.end(), touched.begin(), repeated.begin());
+}
+
+}  // namespace
+
+Vertex next_vertex(const Mesh& mesh, std::size_t k) {
+    const std::size_t spare = mesh.free_vertices.size();
+    return k < spare ? mesh.free_vertices[spare - 1 - k] : Vertex(mesh.position.size() + k - spare);
+}
+
+std::vector<Tet> replace_cells(Mesh& mesh, const Cavity& cavity) {
+    const auto names = slots(mesh, cavity);
+    const auto joins = join_facets(mesh, cavity, names);
+
+    std::vector<Vertex> touched;
+    clear_removed(mesh, cavity, touched);
+    insert_vertices(mesh, cavity.inserted);
+    write_added(mesh, cavity, names);
+    for (const Join& j : joins) {
+        mesh.neighbour[names[j.added]][at(j.corner)] = j.neighbour;
+        mesh.patch[names[j.added]][at(j.corner)] = j.patch;
+        if (j.neighbour_corner >= 0) mesh.neighbour[j.neighbour][at(j.neighbour_corner)] = names[j.added];
+    }
+    free_lost_vertices(mesh, touched);
+    return names;
+}
+
+}  // namespace kropla

@@ -1,0 +1,146 @@
+#include "mesh/mesh.h"
+
+#include "base/error.h"
+#include "mesh/cells.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace kropla {
+namespace {
+
+/// A facet as it is looked up: its vertices in ascending order, and where it was seen.
+struct FacetRecord {
+    std::array<Vertex, 3> key;
+    Tet tet;     // none: a facet of the boundary, as given
+    int corner;  // of the tet; or the position in the list of boundary facets
+};
+
+std::array<Vertex, 3> sorted(std::array<Vertex, 3> v) {
+    std::ranges::sort(v);
+    return v;
+}
+
+/// The facets of all tets and the given boundary facets, grouped by their smallest vertex: a counting sort, as the
+/// groups are small.
+struct FacetGroups {
+    std::vector<FacetRecord> records;
+    std::vector<std::size_t> first;  // per vertex, and one more
+};
+
+FacetGroups group_facets(const Mesh& mesh, std::span<const BoundaryFacet> boundary) {
+    std::vector<FacetRecord> all;
+    all.reserve(4 * mesh.tets.size() + boundary.size());
+    for (Tet t : mesh.tets.indices())
+        for (int i = 0; i < 4; ++i) {
+            const auto& v = mesh.tets[t];
+            const auto& c = tet_facets[static_cast<std::size_t>(i)];
+            all.push_back({sorted({v[c[0]], v[c[1]], v[c[2]]}), t, i});
+        }
+    for (std::size_t i = 0; i < boundary.size(); ++i)
+        all.push_back({sorted(boundary[i].vertices), Tet{}, static_cast<int>(i)});
+
+    FacetGroups groups;
+    groups.first.assign(mesh.position.size() + 1, 0);
+    for (const auto& r : all) ++groups.first[static_cast<std::size_t>(r.key[0].value) + 1];
+    std::partial_sum(groups.first.begin(), groups.first.end(), groups.first.begin());
+    auto next = groups.first;
+    groups.records.resize(all.size());
+    for (const auto& r : all) groups.records[next[static_cast<std::size_t>(r.key[0].value)]++] = r;
+    return groups;
+}
+
+void check_vertices(const Mesh& mesh) {
+    const auto vertices = static_cast<std::int32_t>(mesh.position.size());
+    for (Tet t : mesh.tets.indices())
+        for (Vertex v : mesh.tets[t])
+            if (v.value < 0 || v.value >= vertices)
+                throw FileError("cell " + std::to_string(t.value) + " has vertex " + std::to_string(v.value) +
+                                ", but there are " + std::to_string(vertices) + " vertices");
+}
+
+/// Joins the records of one facet: two tets become neighbours, a boundary facet gives its patch.
+void join(Mesh& mesh, std::span<const FacetRecord> same, std::span<const BoundaryFacet> boundary) {
+    std::array<const FacetRecord*, 2> cells{};
+    std::size_t count = 0;
+    Patch patch{0};
+    for (const auto& r : same) {
+        if (!r.tet.exists()) {
+            patch = boundary[static_cast<std::size_t>(r.corner)].patch;
+            continue;
+        }
+        if (count == 2)
+            throw FileError("a facet of cell " + std::to_string(r.tet.value) + " already belongs to cells " +
+                            std::to_string(cells[0]->tet.value) + " and " + std::to_string(cells[1]->tet.value));
+        cells[count++] = &r;
+    }
+    if (count == 2) {
+        mesh.neighbour[cells[0]->tet][static_cast<std::size_t>(cells[0]->corner)] = cells[1]->tet;
+        mesh.neighbour[cells[1]->tet][static_cast<std::size_t>(cells[1]->corner)] = cells[0]->tet;
+    } else if (count == 1) {
+        mesh.patch[cells[0]->tet][static_cast<std::size_t>(cells[0]->corner)] = patch;
+    }
+}
+
+void find_neighbours(Mesh& mesh, std::span<const BoundaryFacet> boundary) {
+    auto groups = group_facets(mesh, boundary);
+    for (Vertex v : mesh.position.indices()) {
+        const auto i = static_cast<std::size_t>(v.value);
+        const std::span group(groups.records.data() + groups.first[i], groups.first[i + 1] - groups.first[i]);
+        std::ranges::stable_sort(group, {}, &FacetRecord::key);
+        for (std::size_t begin = 0, end = 0; begin < group.size(); begin = end) {
+            while (end < group.size() && group[end].key == group[begin].key) ++end;
+            join(mesh, group.subspan(begin, end - begin), boundary);
+        }
+    }
+}
+
+}  // namespace
+
+Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> tets, Array<Tet, Region> region,
+               std::span<const BoundaryFacet> boundary) {
+    Mesh mesh;
+    mesh.position = std::move(position);
+    mesh.tets = std::move(tets);
+    mesh.region = std::move(region);
+    check_vertices(mesh);
+    mesh.neighbour.resize(mesh.tets.size());
+    mesh.patch.resize(mesh.tets.size());
+    mesh.tet_at.resize(mesh.position.size());
+    find_neighbours(mesh, boundary);
+    for (Tet t : mesh.tets.indices())
+        for (Vertex v : mesh.tets[t]) mesh.tet_at[v] = t;
+    for (Vertex v : mesh.position.indices())
+        if (!alive(mesh, v)) mesh.free_vertices.push_back(v);
+    return mesh;
+}
+
+Compacted compact(const Mesh& mesh) {
+    Compacted result;
+    Array<Vertex, Vertex> new_vertex(mesh.position.size());
+    Array<Tet, Tet> new_tet(mesh.tets.size());
+    for (Vertex v : mesh.position.indices())
+        if (alive(mesh, v)) {
+            new_vertex[v] = result.old_vertex.push_back(v);
+            result.mesh.position.push_back(mesh.position[v]);
+        }
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t)) new_tet[t] = result.old_tet.push_back(t);
+
+    for (Tet t : result.old_tet) {
+        auto vertices = mesh.tets[t];
+        auto neighbours = mesh.neighbour[t];
+        for (auto& v : vertices) v = new_vertex[v];
+        for (auto& n : neighbours)
+            if (n.exists()) n = new_tet[n];
+        result.mesh.tets.push_back(vertices);
+        result.mesh.neighbour.push_back(neighbours);
+        result.mesh.patch.push_back(mesh.patch[t]);
+        result.mesh.region.push_back(mesh.region[t]);
+    }
+    for (Vertex v : result.old_vertex) result.mesh.tet_at.push_back(new_tet[mesh.tet_at[v]]);
+    return result;
+}
+
+}  // namespace kropla

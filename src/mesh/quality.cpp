@@ -1,0 +1,77 @@
+#include "mesh/quality.h"
+
+#include "base/tetrahedron.h"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+namespace kropla {
+namespace {
+
+std::array<Vec3, 4> corners(const Mesh& mesh, Tet t) {
+    const auto& v = mesh.tets[t];
+    return {mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]], mesh.position[v[3]]};
+}
+
+}  // namespace
+
+double aspect_ratio(const Mesh& mesh, Tet t) {
+    const auto [a, b, c, d] = corners(mesh, t);
+    return tet_aspect_ratio(a, b, c, d);
+}
+
+double volume(const Mesh& mesh, Tet t) {
+    const auto [a, b, c, d] = corners(mesh, t);
+    return tet_volume(a, b, c, d);
+}
+
+Vec3 centroid(const Mesh& mesh, Tet t) {
+    const auto [a, b, c, d] = corners(mesh, t);
+    return (a + b + c + d) / 4;
+}
+
+double worst_aspect_ratio(const Mesh& mesh, std::span<const Tet> tets) {
+    double worst = 0;
+    for (Tet t : tets) worst = std::max(worst, aspect_ratio(mesh, t));
+    return worst;
+}
+
+QualitySummary summarise_quality(const Mesh& mesh, Region only) {
+    QualitySummary summary;
+    summary.vertices = count_vertices(mesh);
+    std::vector<double> ratios;
+    ratios.reserve(mesh.tets.size());
+    double sum = 0;
+    for (Tet t : mesh.tets.indices()) {
+        if (!alive(mesh, t) || (only.exists() && mesh.region[t] != only)) continue;
+        const auto [a, b, c, d] = corners(mesh, t);
+        const double ratio = tet_aspect_ratio(a, b, c, d);
+        if (ratio > summary.max_aspect_ratio) {
+            summary.max_aspect_ratio = ratio;
+            summary.worst = t;
+        }
+        ratios.push_back(ratio);
+        sum += ratio;
+        const auto angles = tet_dihedral_angles(a, b, c, d);
+        const auto [least, largest] = std::ranges::minmax(angles);
+        summary.min_dihedral = std::min(summary.min_dihedral, least * 180 / std::numbers::pi);
+        summary.max_dihedral = std::max(summary.max_dihedral, largest * 180 / std::numbers::pi);
+    }
+    summary.tets = static_cast<int>(ratios.size());
+    if (ratios.empty()) return summary;
+    summary.mean_aspect_ratio = sum / static_cast<double>(ratios.size());
+    const auto rank = static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(ratios.size() - 1));
+    std::nth_element(ratios.begin(), ratios.begin() + rank, ratios.end());
+    summary.p999_aspect_ratio = ratios[static_cast<std::size_t>(rank)];
+    return summary;
+}
+
+double region_volume(const Mesh& mesh, Region region) {
+    double sum = 0;
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t) && mesh.region[t] == region) sum += volume(mesh, t);
+    return sum;
+}
+
+}  // namespace kropla
