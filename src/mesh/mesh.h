@@ -14,6 +14,9 @@ using Tet = Index<struct TetTag>;
 using Region = Index<struct RegionTag>;  ///< a named part of the volume: 0 the surroundings, 1, 2, ... the bodies
 using Patch = Index<struct PatchTag>;    ///< a named part of the boundary: 0 ... 5 the faces of the box
 
+/// Patches below this are plane, x min, x max, y min, ... z max: facets on them may be exchanged for others in the
+/// same plane. Facets of all other patches are to stay as they are.
+inline constexpr int box_faces = 6;
 inline constexpr Region surroundings{0};
 
 /// A tetrahedral mesh as a value: copy it to keep it. Its invariant is `verify`; `replace_cells` is the only function

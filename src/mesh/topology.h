@@ -58,6 +58,8 @@ struct Constraint {
     unsigned patches = 0;
     bool on_interface = false;
     [[nodiscard]] bool free() const { return patches == 0 && !on_interface; }
+    /// Held to a surface that is no face of the box: its facets are to stay as they are.
+    [[nodiscard]] bool rigid() const { return on_interface || (patches >> box_faces) != 0; }
     bool operator==(const Constraint&) const = default;
 };
 [[nodiscard]] Constraint constraint(const Mesh& mesh, Vertex v, std::span<const Tet> ball);

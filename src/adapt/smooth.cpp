@@ -1,0 +1,78 @@
+// Smoothing: the paper's weighted Laplacian (section 1.1, Fig. 4) here in 3D over the vertices joined to P0 by an
+// edge; guarded by the worst aspect ratio of the ball; and optimisation of the worst (star.cpp).
+
+#include "adapt/adapt.h"
+#include "adapt/star.h"
+#include "mesh/quality.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace kropla {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+Vec3 laplacian_place(const Mesh& mesh, Vertex v, const LaplaceWeights& weights) {
+    const Vec3 here = mesh.position[v];
+    const Freedom f = freedom(constraint(mesh, v, ball(mesh, v)));
+    if (f.none()) return here;
+    const auto neighbours = adjacent_vertices(mesh, v);
+
+    std::vector<double> reach;  // per neighbour: the sum of its distances to the others
+    double sum = 0;
+    for (Vertex p : neighbours) {
+        double r = 0;
+        for (Vertex q : neighbours) r += distance(mesh.position[p], mesh.position[q]);
+        reach.push_back(r);
+        sum += r;
+    }
+    const double mean = sum / static_cast<double>(neighbours.size());
+
+    Vec3 place;
+    double total = 0;
+    for (std::size_t i = 0; i < neighbours.size(); ++i) {
+        const double w = weights.x1 + weights.x2 * reach[i] / mean;
+        place += w * mesh.position[neighbours[i]];
+        total += w;
+    }
+    return here + restricted(place / total - here, f);
+}
+
+void smooth_laplacian(Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights) {
+    for (Vertex v : vertices) mesh.position[v] = laplacian_place(mesh, v, weights);
+}
+
+std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights) {
+    std::vector<Vertex> moved;
+    std::vector<Tet> around;
+    std::vector<StarFacet> star;
+    for (Vertex v : vertices) {
+        const Vec3 place = laplacian_place(mesh, v, weights);
+        if (place == mesh.position[v]) continue;
+        ball(mesh, v, around);
+        star_of_ball(mesh, v, around, star);
+        const double worst = worst_in_star(star, mesh.position[v], infinity);
+        if (worst_in_star(star, place, worst) > worst) continue;
+        mesh.position[v] = place;
+        moved.push_back(v);
+    }
+    return moved;
+}
+
+bool optimise_vertex(Mesh& mesh, Vertex v, double good_enough) {
+    std::vector<Tet> around;
+    ball(mesh, v, around);
+    const Freedom f = freedom(constraint(mesh, v, around));
+    if (f.none()) return false;
+    std::vector<StarFacet> star;
+    star_of_ball(mesh, v, around, star);
+    const Place best = best_place(star, mesh.position[v], f, good_enough);
+    if (best.x == mesh.position[v]) return false;
+    mesh.position[v] = best.x;
+    return true;
+}
+
+}  // namespace kropla
