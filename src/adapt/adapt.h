@@ -16,9 +16,10 @@ namespace kropla {
 // --- What adaptation did ---------------------------------------------------------------------------------------
 
 /// What was changed and how often each operator was used. `vertices` are new or were moved at a fixed time, so that
-/// the solution is to be carried there (each may stand more than once, some may be gone again).
+/// the solution is to be carried there; `cells` are new. Each may stand more than once, some may be gone again.
 struct Changes {
     std::vector<Vertex> vertices;
+    std::vector<Tet> cells;
     int smoothing_sweeps = 0, moved = 0, swaps = 0, splits = 0, collapses = 0;
     int local_remeshes = 0, largest_ring = 0, global_remeshes = 0;
     int cells_replaced = 0;
@@ -69,12 +70,6 @@ inline constexpr int longest_ring = 9;
 /// an edge of an interface, or if the worst aspect ratio after would exceed `worst_allowed`.
 [[nodiscard]] std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge, double worst_allowed);
 
-/// Cuts a cluster of tets of one region out, keeps its boundary facets, drops its free vertices, fills it with new
-/// points of the target size, re-triangulates and unites; where a boundary facet is not recovered, the cell across
-/// it joins the cluster. Nothing if that does not end, or the worst aspect ratio would not fall.
-[[nodiscard]] std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> cluster, const Snapshot& at,
-                                                   std::uint64_t seed);
-
 // --- Improvement: operators chosen worst-first -------------------------------------------------------------------
 
 struct AdaptOptions {
@@ -98,33 +93,35 @@ Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at
 /// of what is left above `good_enough`.
 Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options = {});
 
+/// Cuts a cluster of tets of one region out, keeps its boundary facets, drops its free vertices, fills it with new
+/// points of the target size, re-triangulates and unites; where a boundary facet is not recovered, the cell across
+/// it joins the cluster. Nothing if that does not end, or the worst aspect ratio would not fall.
+[[nodiscard]] std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> cluster, const Snapshot& at,
+                                                   const AdaptOptions& options = {});
+
 /// The repair ladder (paper 1.2-1.3): what `improve` leaves above the floor is cut out and re-triangulated, with one
 /// more ring of cells each time, at last with the whole region.
 Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
 // --- Motion ------------------------------------------------------------------------------------------------------
 
-/// How far a set of cells can go along given displacements.
 /// The largest fraction in [0, 1] of the displacements up to which all of `cells` keep a volume of at least `least`
 /// of what they have; from the cubic of each cell's volume along its path.
 [[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells,
                                    const Array<Vertex, Vec3>& displacement, double least = 0.05);
 
 struct MoveReport {
-    bool arrived = false;
-    double fraction = 0;             // of the way to the destination
-    std::vector<Tet> cells;          // surroundings with a vertex that moved
-    std::vector<Vertex> vertices;    // the surroundings' vertices that moved
-    Tet limiting;                    // the cell that stopped it, if it did not arrive
+    bool arrived = false;          // else the mesh is as it was
+    double fraction = 0;           // of the way that is safe for all cells
+    std::vector<Tet> cells;        // of the surroundings, with a vertex that moves
+    std::vector<Vertex> vertices;  // of the surroundings, that move
+    Tet limiting;                  // the cell that stopped it, if it did not arrive
 };
 
-/// Moves bodies rigidly from their places at `t0` to those at `t1` and spreads the displacement into the surroundings,
-/// as far as every cell stays valid. Connectivity is unchanged. `body_vertices` are, per body, the vertices of
-/// its cells and where they were at the start.
-struct BodyVertices {
-    std::vector<Vertex> vertices;
-    std::vector<Vec3> at_start;  // [m]
-};
-MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const BodyVertices> bodies, double t0, double t1);
+/// Moves bodies rigidly from their places at `t0` to those at `t1` [s] and spreads the displacement into the
+/// surroundings, if every cell stays valid on the way; else tells how far it could go. Connectivity is unchanged.
+/// `bodies` are, per body, the vertices of its cells.
+MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
+                         double t1);
 
 }  // namespace kropla

@@ -1,2 +1,10 @@
 list(APPEND KROPLA_MESH_FILES
+    adapt/star.cpp
+    adapt/smooth.cpp
+    adapt/swap.cpp
+    adapt/refine.cpp
+    adapt/improve.cpp
+    adapt/remesh.cpp
+    adapt/move.cpp
+    adapt/moving_mesh.cpp
 )

@@ -152,6 +152,12 @@ std::optional<Cavity> split(const Mesh& mesh, Edge e, const AdaptOptions& o) {
     return edge_split(mesh, *around, e, std::max(o.good_enough, worst_aspect_ratio(mesh, around->tets)));
 }
 
+void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
+    const auto added = replace_cells(mesh, cavity);
+    changes.cells.insert(changes.cells.end(), added.begin(), added.end());
+    changes.cells_replaced += static_cast<int>(cavity.removed.size());
+}
+
 }  // namespace
 
 Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
@@ -170,14 +176,12 @@ Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at
             const auto cavity = split(mesh, edge, options);
             if (!cavity) continue;
             changes.vertices.push_back(next_vertex(mesh));
-            replace_cells(mesh, *cavity);
-            changes.cells_replaced += static_cast<int>(cavity->removed.size());
+            carry_out(mesh, *cavity, changes);
             ++changes.splits;
         } else if (shell(mesh, edge)) {
             const auto cavity = collapse_either_way(mesh, edge, measure, options);
             if (!cavity) continue;
-            replace_cells(mesh, *cavity);
-            changes.cells_replaced += static_cast<int>(cavity->removed.size());
+            carry_out(mesh, *cavity, changes);
             ++changes.collapses;
         }
     }

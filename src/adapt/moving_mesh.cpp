@@ -1,0 +1,167 @@
+#include "adapt/moving_mesh.h"
+
+#include "mesh/quality.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace kropla {
+namespace {
+
+constexpr int most_legs = 8;             // into which the motion of a step is cut
+constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
+constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
+constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
+constexpr double harder = 0.8;           // there, cells must be better by this than elsewhere
+
+std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
+    std::vector<Vertex> vertices;
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t) && mesh.region[t] == region)
+            vertices.insert(vertices.end(), mesh.tets[t].begin(), mesh.tets[t].end());
+    std::ranges::sort(vertices);
+    const auto repeated = std::ranges::unique(vertices);
+    vertices.erase(repeated.begin(), repeated.end());
+    return vertices;
+}
+
+std::string describe(const Mesh& mesh, Tet t, const char* what) {
+    const Vec3 x = centroid(mesh, t);
+    char text[200];
+    std::snprintf(text, sizeof text, "cell %d at (%.5g, %.5g, %.5g) m %s", t.value, x.x, x.y, x.z, what);
+    return text;
+}
+
+std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, const Snapshot& at_time) {
+    std::vector<Tet> cells;
+    for (Tet t : mesh.tets.indices()) {
+        if (!alive(mesh, t) || mesh.region[t] != surroundings) continue;
+        const Vec3 x = centroid(mesh, t);
+        if (std::ranges::any_of(places, [&](const Vec3& p) {
+                return distance(p, x) < trouble_in_sizes * target_size(at_time, p);
+            }))
+            cells.push_back(t);
+    }
+    return cells;
+}
+
+Array<Vertex, Vec3> displacement_between(const Mesh& before, const Mesh& after) {
+    Array<Vertex, Vec3> displacement(before.position.size());
+    for (Vertex v : before.position.indices()) displacement[v] = after.position[v] - before.position[v];
+    return displacement;
+}
+
+}  // namespace
+
+MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options)
+    : domain_(std::move(domain)), options_(options), reference_(std::move(mesh)), time_(t), target_time_(t) {
+    for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
+        bodies_.push_back(vertices_of(reference_, region_of_body(body)));
+}
+
+void MovingMesh::begin_step() {
+    current_ = reference_;
+    before_ = reference_;
+    touched_.clear();
+    stuck_.reset();
+    statistics_ = {};
+}
+
+const Changes& MovingMesh::refine() {
+    Changes& changes = statistics_.refined;
+    if (trouble_.empty()) return changes;
+    const Snapshot at_time = snapshot(domain_, time_);
+    AdaptOptions options = options_;
+    options.good_enough = std::max(3.5, harder * options_.good_enough);
+    auto cells = cells_near(current_, trouble_, at_time);
+    changes = adapt_to_size(current_, cells, at_time, options);
+    cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());
+    changes += improve(current_, cells, at_time, options);
+    before_ = current_;
+    note_touched(changes.cells);
+    return changes;
+}
+
+void MovingMesh::move_boundary(double t) {
+    target_time_ = t;
+    double here = time_;
+    for (statistics_.legs = 1; statistics_.legs <= most_legs; ++statistics_.legs) {
+        auto report = kropla::move_boundary(current_, domain_, bodies_, here, t);
+        note_touched(report.cells);
+        if (report.arrived) return;
+        const double leg = share_of_safe * report.fraction;
+        const double next = here + leg * (t - here);
+        if (leg < least_leg || !kropla::move_boundary(current_, domain_, bodies_, here, next).arrived) {
+            stuck_ = Refusal{describe(current_, report.limiting, "would be turned inside out"), report.limiting,
+                             here - time_};
+            return;
+        }
+        here = next;
+        statistics_.optimised += optimise_places(current_, report.cells, options_);
+        stuck_ = Refusal{describe(current_, report.limiting, "keeps the bodies from arriving"), report.limiting,
+                         here - time_};
+    }
+}
+
+void MovingMesh::optimise() {
+    if (!stuck_) statistics_.optimised += optimise_places(current_, touched_, options_);
+}
+
+std::optional<Refusal> MovingMesh::refusal() const {
+    if (stuck_) return stuck_;
+    Refusal refusal;
+    double worst = options_.floor;
+    for (Tet t : touched_)
+        if (const double ratio = aspect_ratio(current_, t); ratio > worst) {
+            worst = ratio;
+            refusal.limiting = t;
+        }
+    if (refusal.limiting.exists()) {
+        char what[80];
+        std::snprintf(what, sizeof what, "would have R/r %.4g, above the limit %.4g", worst, options_.floor);
+        const double was = aspect_ratio(before_, refusal.limiting);
+        const double share = was < options_.floor ? (options_.floor - was) / (worst - was) : 0;
+        refusal.why = describe(current_, refusal.limiting, what);
+        refusal.advised_dt = share * (target_time_ - time_);
+        return refusal;
+    }
+    const auto displacement = displacement_between(before_, current_);
+    for (Tet t : touched_)
+        if (const double safe = safe_fraction(before_, {&t, 1}, displacement); safe < 1)
+            return Refusal{describe(before_, t, "would be turned inside out on its way"), t,
+                           safe * (target_time_ - time_)};
+    return std::nullopt;
+}
+
+void MovingMesh::refuse() {
+    if (const auto reason = refusal()) trouble_.push_back(centroid(before_, reason->limiting));
+    current_ = reference_;
+    before_ = reference_;
+}
+
+const Changes& MovingMesh::accept() {
+    time_ = target_time_;
+    before_ = std::move(current_);
+    reference_ = before_;
+    trouble_.clear();
+
+    const Snapshot at_time = snapshot(domain_, time_);
+    Changes& changes = statistics_.remeshed;
+    changes = adapt_to_size(reference_, touched_, at_time, options_);
+    note_touched(changes.cells);
+    changes += improve(reference_, touched_, at_time, options_);
+    note_touched(changes.cells);
+    changes += repair(reference_, touched_, at_time, options_);
+    note_touched(changes.cells);
+    statistics_.cells_touched = static_cast<int>(touched_.size());
+    return changes;
+}
+
+void MovingMesh::note_touched(std::span<const Tet> cells) {
+    touched_.insert(touched_.end(), cells.begin(), cells.end());
+    std::ranges::sort(touched_);
+    const auto repeated = std::ranges::unique(touched_);
+    touched_.erase(repeated.begin(), repeated.end());
+}
+
+}  // namespace kropla

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "adapt/adapt.h"
+
+namespace kropla {
+
+/// Why a step is refused: what is wrong, where, and what would help.
+struct Refusal {
+    std::string why;       // one line: the limiting cell, its place, its aspect ratio
+    Tet limiting;          // in the current mesh
+    double advised_dt = 0; // [s] that would have been safe
+};
+
+/// What a step did to the mesh, for reports.
+struct StepStatistics {
+    Changes refined;     // (2.2), before the motion
+    Changes optimised;   // (2.4), along with it
+    Changes remeshed;    // (2.6), after it
+    int legs = 0;        // into which the motion was cut
+    int cells_touched = 0;
+};
+
+/// A mesh that follows its bodies, by the paper's step (1, 2.1-2.6): a reference mesh that is not touched before a
+/// step has been accepted, and a current mesh on which the step is prepared.
+///
+///     moving.begin_step();                    // 2.1
+///     moving.refine();                        // 2.2
+///     moving.move_boundary(t + dt);           // 2.3
+///     moving.optimise();                      // 2.4
+///     if (moving.refusal()) moving.refuse();  // the reference is as it was; the next refine() knows where it stuck
+///     else moving.accept();                   // 2.6
+class MovingMesh {
+public:
+    /// `mesh` is the mesh of `domain` at time `t` [s].
+    MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options = {});
+
+    [[nodiscard]] const Mesh& reference() const { return reference_; }
+    [[nodiscard]] double time() const { return time_; }  ///< of the reference [s]
+    [[nodiscard]] const StepStatistics& statistics() const { return statistics_; }
+
+    /// The current mesh becomes a copy of the reference.
+    void begin_step();
+    /// After a refusal, remeshes where the motion got stuck; else does nothing. The solution is to be carried from
+    /// reference() to before() at the vertices that are returned.
+    const Changes& refine();
+    /// Moves bodies to where they are at `t` [s], in as many legs as it takes for all cells to stay valid.
+    void move_boundary(double t);
+    void optimise();
+
+    /// The mesh of the step at its beginning and at its end: one connectivity, two sets of places. After accept(),
+    /// before() is the mesh at the end of the step, not yet remeshed.
+    [[nodiscard]] const Mesh& before() const { return before_; }
+    [[nodiscard]] const Mesh& current() const { return current_; }
+
+    /// Empty if the motion arrived and every cell meets the floors, all along its way.
+    [[nodiscard]] std::optional<Refusal> refusal() const;
+    void refuse();
+    /// The current mesh becomes the reference and is remeshed where needed. The solution is to be carried from
+    /// before() to reference() at the vertices that are returned.
+    const Changes& accept();
+
+private:
+    void note_touched(std::span<const Tet> cells);
+
+    Domain domain_;
+    AdaptOptions options_;
+    std::vector<std::vector<Vertex>> bodies_;  // the vertices of each body's cells
+    Mesh reference_, before_, current_;
+    double time_, target_time_;
+    std::vector<Tet> touched_;      // cells of the current mesh that moved or are new
+    std::vector<Vec3> trouble_;     // where the attempts refused since the last accepted step got stuck
+    std::optional<Refusal> stuck_;  // the motion did not arrive
+    StepStatistics statistics_;
+};
+
+}  // namespace kropla

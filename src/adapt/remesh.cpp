@@ -1,0 +1,302 @@
+// Local remeshing (paper 1.3): cut a cluster out, keep its boundary, fill it with new points, triangulate, unite. The
+// paper keeps the vertices next to the cluster; here its boundary facets are kept, so that uniting is exact, and where
+// the Delaunay triangulation of the cluster's points lacks one of them, the cluster grows across it: remeshing spreads
+// only where it must. The repair ladder climbs from there ring by ring.
+
+#include "adapt/adapt.h"
+#include "base/random.h"
+#include "generate/generate.h"
+#include "mesh/quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <unordered_map>
+#include <utility>
+
+namespace kropla {
+namespace {
+
+constexpr double spacing_in_sizes = 0.8;     // of new points, as in the initial mesh
+constexpr double clearance_in_sizes = 0.5;   // of new points from the cluster's boundary facets
+constexpr int tries_per_point = 30;          // random candidates per point that would fit
+constexpr int most_growths = 30;             // of a cluster to take in facets that are not recovered
+constexpr double least_gain = 1e-3;
+constexpr Patch frozen{box_faces};           // the cluster's boundary, while it is a mesh of its own
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// A set of tets with quick membership, in a fixed order.
+struct Cluster {
+    std::vector<Tet> cells;
+    std::vector<char> has;  // per tet slot
+
+    Cluster(const Mesh& mesh, std::vector<Tet> tets) : has(mesh.tets.size(), 0) {
+        for (Tet t : tets) add(t);
+    }
+    void add(Tet t) {
+        if (contains(t)) return;
+        has[at(t.value)] = 1;
+        cells.push_back(t);
+    }
+    [[nodiscard]] bool contains(Tet t) const { return has[at(t.value)] != 0; }
+};
+
+/// The cluster as a problem of its own: the facets that stay, by numbers of its own for their vertices.
+struct Hole {
+    std::vector<Vertex> vertices;                   // of the boundary, by number
+    std::vector<std::array<int, 3>> facets;         // counter-clockwise from outside
+    std::vector<Facet> facets_in_mesh;
+    std::vector<Vec3> points;                       // of the vertices, then new ones
+};
+
+Hole boundary_of(const Mesh& mesh, const Cluster& cluster) {
+    Hole hole;
+    std::unordered_map<std::int32_t, int> number;
+    for (Tet t : cluster.cells)
+        for (int i = 0; i < 4; ++i) {
+            const Tet n = mesh.neighbour[t][at(i)];
+            if (n.exists() && cluster.contains(n)) continue;
+            std::array<int, 3> facet{};
+            const auto corners = facet_vertices(mesh, {t, i});
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto [known, is_new] = number.emplace(corners[k].value, static_cast<int>(hole.vertices.size()));
+                if (is_new) {
+                    hole.vertices.push_back(corners[k]);
+                    hole.points.push_back(mesh.position[corners[k]]);
+                }
+                facet[k] = known->second;
+            }
+            hole.facets.push_back(facet);
+            hole.facets_in_mesh.push_back({t, i});
+        }
+    return hole;
+}
+
+double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 normal = cross(b - a, c - a);
+    const auto inside = [&](const Vec3& p, const Vec3& q) { return dot(cross(q - p, x - p), normal) >= 0; };
+    if (inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(dot(x - a, normal)) / norm(normal);
+    const auto to_segment = [&](const Vec3& p, const Vec3& q) {
+        const double s = std::clamp(dot(x - p, q - p) / squared_norm(q - p), 0.0, 1.0);
+        return distance(x, p + s * (q - p));
+    };
+    return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+}
+
+/// Is there room for a new point at `x`: nothing nearer than the target spacing, no boundary facet too close?
+bool has_room(const Hole& hole, const Vec3& x, double size) {
+    for (const Vec3& p : hole.points)
+        if (squared_norm(p - x) < spacing_in_sizes * spacing_in_sizes * size * size) return false;
+    return std::ranges::all_of(hole.facets, [&](const std::array<int, 3>& f) {
+        return distance_to_triangle(x, hole.points[at(f[0])], hole.points[at(f[1])], hole.points[at(f[2])]) >=
+               clearance_in_sizes * size;
+    });
+}
+
+Vec3 random_place(const Mesh& mesh, Tet t, Random& random) {
+    // Four exponential variates, normalised, are uniform barycentric coordinates.
+    Vec3 sum;
+    double total = 0;
+    for (Vertex v : mesh.tets[t]) {
+        const double w = -std::log(1 - random.uniform());
+        sum += w * mesh.position[v];
+        total += w;
+    }
+    return sum / total;
+}
+
+void fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& at_time, Random& random, Hole& hole) {
+    for (Tet t : cluster.cells) {
+        const double size = target_size(at_time, centroid(mesh, t));
+        const double fitting = volume(mesh, t) / (std::pow(spacing_in_sizes * size, 3) / std::numbers::sqrt2);
+        const int tries = 1 + static_cast<int>(std::ceil(tries_per_point * fitting));
+        for (int i = 0; i < tries; ++i) {
+            const Vec3 x = random_place(mesh, t, random);
+            if (has_room(hole, x, target_size(at_time, x))) hole.points.push_back(x);
+        }
+    }
+}
+
+std::array<int, 3> rotated_to_least(std::array<int, 3> f) {
+    std::ranges::rotate(f, std::ranges::min_element(f));
+    return f;
+}
+
+/// The Delaunay tets inside the hole; `missing` are the facets that are not facets of the triangulation.
+struct Filling {
+    std::vector<std::array<Vertex, 4>> tets;
+    std::vector<std::size_t> missing;
+    bool closed = true;  // the tets inside are bounded by the facets
+};
+
+Filling fill_hole(const Hole& hole) {
+    const Triangulation all = triangulate(hole.points);
+    std::map<std::array<int, 3>, Facet> seen;  // oriented facets of all tets
+    for (Tet t : all.tets.indices())
+        for (int i = 0; i < 4; ++i) {
+            const auto& c = tet_facets[at(i)];
+            const auto& v = all.tets[t];
+            seen[rotated_to_least({v[at(c[0])].value, v[at(c[1])].value, v[at(c[2])].value})] = {t, i};
+        }
+    Filling filling;
+    std::vector<char> inside(all.tets.size(), 0), barred(4 * all.tets.size(), 0);
+    std::vector<Tet> reached;
+    for (std::size_t f = 0; f < hole.facets.size(); ++f) {
+        const auto found = seen.find(rotated_to_least(hole.facets[f]));
+        if (found == seen.end()) {
+            filling.missing.push_back(f);
+            continue;
+        }
+        const auto [t, corner] = found->second;
+        barred[4 * at(t.value) + at(corner)] = 1;
+        if (std::exchange(inside[at(t.value)], 1) == 0) reached.push_back(t);
+    }
+    if (!filling.missing.empty()) return filling;
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+        const Tet t = reached[i];
+        filling.tets.push_back(all.tets[t]);
+        for (int corner = 0; corner < 4; ++corner) {
+            if (barred[4 * at(t.value) + at(corner)] != 0) continue;
+            const Tet n = all.neighbour[t][at(corner)];
+            if (!n.exists()) filling.closed = false;
+            else if (std::exchange(inside[at(n.value)], 1) == 0) reached.push_back(n);
+        }
+    }
+    return filling;
+}
+
+/// Takes in the cells across the facets that were not recovered. Nothing can be taken in across the boundary or an
+/// interface: then false.
+bool grow_across(const Mesh& mesh, const Hole& hole, std::span<const std::size_t> missing, Cluster& cluster) {
+    bool grown = false;
+    for (std::size_t f : missing) {
+        const Facet facet = hole.facets_in_mesh[f];
+        const Tet n = mesh.neighbour[facet.tet][at(facet.corner)];
+        if (!n.exists() || mesh.region[n] != mesh.region[facet.tet]) continue;
+        cluster.add(n);
+        grown = true;
+    }
+    return grown;
+}
+
+/// The filled hole as a mesh of its own, improved with its boundary frozen.
+Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& at_time, const AdaptOptions& options) {
+    Array<Vertex, Vec3> position;
+    for (const Vec3& x : hole.points) position.push_back(x);
+    Array<Tet, std::array<Vertex, 4>> tets;
+    for (const auto& t : filling.tets) tets.push_back(t);
+    Array<Tet, Region> region(tets.size(), surroundings);
+    std::vector<BoundaryFacet> boundary;
+    for (const auto& f : hole.facets) boundary.push_back({{Vertex(f[0]), Vertex(f[1]), Vertex(f[2])}, frozen});
+    Mesh mesh = make_mesh(std::move(position), std::move(tets), std::move(region), boundary);
+    std::vector<Tet> cells;
+    for (Tet t : mesh.tets.indices()) cells.push_back(t);
+    improve(mesh, cells, at_time, options);
+    return mesh;
+}
+
+Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, const Mesh& filled) {
+    Cavity cavity;
+    cavity.removed = cluster.cells;
+    cavity.worst_before = worst_aspect_ratio(mesh, cluster.cells);
+    Array<Vertex, Vertex> name(filled.position.size());
+    for (Vertex v : filled.position.indices()) {
+        if (at(v.value) < hole.vertices.size()) {
+            name[v] = hole.vertices[at(v.value)];
+        } else if (alive(filled, v)) {
+            name[v] = next_vertex(mesh, cavity.inserted.size());
+            cavity.inserted.push_back(filled.position[v]);
+        }
+    }
+    for (Tet t : filled.tets.indices()) {
+        if (!alive(filled, t)) continue;
+        auto v = filled.tets[t];
+        for (auto& corner : v) corner = name[corner];
+        cavity.added.push_back({v, mesh.region[cluster.cells.front()]});
+        cavity.worst_after = std::max(cavity.worst_after, aspect_ratio(filled, t));
+    }
+    return cavity;
+}
+
+}  // namespace
+
+std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, const Snapshot& at_time,
+                                     const AdaptOptions& options) {
+    Cluster cluster(mesh, std::move(tets));
+    Random random{options.seed};
+    for (int growth = 0; growth < most_growths; ++growth) {
+        Hole hole = boundary_of(mesh, cluster);
+        fill_with_points(mesh, cluster, at_time, random, hole);
+        const Filling filling = fill_hole(hole);
+        if (!filling.missing.empty()) {
+            if (!grow_across(mesh, hole, filling.missing, cluster)) return std::nullopt;
+            continue;
+        }
+        if (!filling.closed) return std::nullopt;
+        Cavity cavity = as_cavity(mesh, cluster, hole, improved_filling(hole, filling, at_time, options));
+        if (cavity.worst_after < (1 - least_gain) * cavity.worst_before) return cavity;
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+namespace {
+
+/// The cluster and one more ring of cells of its region.
+std::vector<Tet> with_ring(const Mesh& mesh, const std::vector<Tet>& cells) {
+    Cluster cluster(mesh, cells);
+    std::vector<Tet> around;
+    for (Tet t : cells)
+        for (Vertex v : mesh.tets[t]) {
+            ball(mesh, v, around);
+            for (Tet n : around)
+                if (mesh.region[n] == mesh.region[cells.front()]) cluster.add(n);
+        }
+    return cluster.cells;
+}
+
+std::vector<Tet> whole_region(const Mesh& mesh, Region region) {
+    std::vector<Tet> cells;
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t) && mesh.region[t] == region) cells.push_back(t);
+    return cells;
+}
+
+void unite(Mesh& mesh, const Cavity& cavity, Changes& changes) {
+    for (std::size_t k = 0; k < cavity.inserted.size(); ++k) changes.vertices.push_back(next_vertex(mesh, k));
+    const auto added = replace_cells(mesh, cavity);
+    changes.cells.insert(changes.cells.end(), added.begin(), added.end());
+    changes.cells_replaced += static_cast<int>(cavity.removed.size());
+}
+
+/// Climbs from one bad cell: its neighbourhood is remeshed, ring by ring, until its place is below the floor.
+void climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, Changes& changes) {
+    std::vector<Tet> cluster{bad};
+    for (int ring = 1; ring <= options.largest_ring; ++ring) {
+        cluster = with_ring(mesh, cluster);
+        options.seed = random_bits(options.seed, static_cast<std::uint64_t>(ring));
+        const auto cavity = cluster_remesh(mesh, cluster, at_time, options);
+        if (!cavity || cavity->worst_after > options.floor) continue;
+        unite(mesh, *cavity, changes);
+        ++changes.local_remeshes;
+        changes.largest_ring = std::max(changes.largest_ring, ring);
+        return;
+    }
+    const auto cavity = cluster_remesh(mesh, whole_region(mesh, mesh.region[bad]), at_time, options);
+    if (!cavity) return;
+    unite(mesh, *cavity, changes);
+    ++changes.global_remeshes;
+}
+
+}  // namespace
+
+Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
+    Changes changes;
+    for (Tet t : cells)
+        if (alive(mesh, t) && aspect_ratio(mesh, t) > options.floor) climb(mesh, t, at_time, options, changes);
+    return changes;
+}
+
+}  // namespace kropla
