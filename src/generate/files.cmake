@@ -1,2 +1,4 @@
 list(APPEND KROPLA_MESH_FILES
+    generate/delaunay.cpp
+    generate/hilbert.cpp
 )
