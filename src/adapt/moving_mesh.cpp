@@ -88,7 +88,10 @@ void MovingMesh::move_boundary(double t) {
     for (statistics_.legs = 1; statistics_.legs <= most_legs; ++statistics_.legs) {
         auto report = kropla::move_boundary(current_, domain_, bodies_, here, t);
         note_touched(report.cells);
-        if (report.arrived) return;
+        if (report.arrived) {
+            stuck_.reset();
+            return;
+        }
         const double leg = share_of_safe * report.fraction;
         const double next = here + leg * (t - here);
         if (leg < least_leg || !kropla::move_boundary(current_, domain_, bodies_, here, next).arrived) {

@@ -1,2 +1,4 @@
 list(APPEND KROPLA_MESH_FILES
+    transfer/locate.cpp
+    transfer/carry.cpp
 )
