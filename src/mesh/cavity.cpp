@@ -36,6 +36,25 @@ std::array<Vertex, 3> ascending(const std::array<Vertex, 4>& v, int corner) {
     return key;
 }
 
+void check_cells(const Mesh& mesh, const Cavity& cavity) {
+    auto removed = cavity.removed;
+    std::ranges::sort(removed);
+    const bool twice = std::ranges::adjacent_find(removed) != removed.end();
+    if (twice || !std::ranges::all_of(removed, [&](Tet t) { return alive(mesh, t); }))
+        throw std::logic_error("replace_cells: a cell is removed that does not exist, or twice");
+    const std::size_t taken = std::min(cavity.inserted.size(), mesh.free_vertices.size());
+    const auto first_taken = mesh.free_vertices.end() - static_cast<std::ptrdiff_t>(taken);
+    const std::size_t size = mesh.position.size() + cavity.inserted.size() - taken;
+    const auto exists = [&](Vertex v) {
+        if (!v.exists() || at(v.value) >= size) return false;
+        if (at(v.value) >= mesh.position.size() || alive(mesh, v)) return true;
+        return std::find(first_taken, mesh.free_vertices.end(), v) != mesh.free_vertices.end();
+    };
+    for (const NewTet& tet : cavity.added)
+        if (!std::ranges::all_of(tet.vertices, exists))
+            throw std::logic_error("replace_cells: an added cell has a vertex that does not exist");
+}
+
 std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity) {
     std::vector<Side> sides;
     sides.reserve(4 * (cavity.removed.size() + cavity.added.size()));
@@ -67,10 +86,10 @@ std::vector<Tet> slots(const Mesh& mesh, const Cavity& cavity) {
     return names;
 }
 
-/// Joins the sides of one facet. Before, the facet was inside the cavity (two removed sides), around it (one) or new
-/// (none); after, it is inside (two added sides), around it (one) or gone (none).
-void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> before, std::span<const Side> after,
-                std::span<const Tet> names, std::vector<Join>& joins) {
+/// Joins the sides of one facet. Before, the facet was inside the cavity (two removed sides), around it (one)
+/// or new (none); after, it is inside (two added sides), around it (one) or gone (none).
+void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> before,
+                std::span<const Side> after, std::span<const Tet> names, std::vector<Join>& joins) {
     if (before.size() > 2 || after.size() > 2 || (before.size() == 1 && after.size() == 2))
         throw std::logic_error("replace_cells: a facet of the cavity is used too often");
     const auto outer = [&](const Side& s) { return Facet{cavity.removed[s.which], s.corner}; };
@@ -84,7 +103,8 @@ void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> be
                          mesh.patch[f.tet][at(f.corner)]});
     } else if (after.size() == 1) {
         const Patch patch = cavity.added[after[0].which].patch[at(after[0].corner)];
-        if (!patch.exists()) throw std::logic_error("replace_cells: an added facet has no other side and no patch");
+        if (!patch.exists())
+            throw std::logic_error("replace_cells: an added facet has no other side and no patch");
         joins.push_back({after[0].which, after[0].corner, Tet{}, -1, patch});
     } else if (before.size() == 1) {
         const Facet f = outer(before[0]);
@@ -110,8 +130,9 @@ std::vector<Join> join_facets(const Mesh& mesh, const Cavity& cavity, std::span<
     return joins;
 }
 
-void insert_vertices(Mesh& mesh, const std::vector<Vec3>& places) {
+void insert_vertices(Mesh& mesh, const std::vector<Vec3>& places, std::vector<Vertex>& touched) {
     for (const Vec3& place : places) {
+        touched.push_back(next_vertex(mesh));
         if (mesh.free_vertices.empty()) {
             mesh.position.push_back(place);
             mesh.tet_at.push_back(Tet{});
@@ -168,12 +189,13 @@ Vertex next_vertex(const Mesh& mesh, std::size_t k) {
 }
 
 std::vector<Tet> replace_cells(Mesh& mesh, const Cavity& cavity) {
+    check_cells(mesh, cavity);
     const auto names = slots(mesh, cavity);
     const auto joins = join_facets(mesh, cavity, names);
 
     std::vector<Vertex> touched;
     clear_removed(mesh, cavity, touched);
-    insert_vertices(mesh, cavity.inserted);
+    insert_vertices(mesh, cavity.inserted, touched);
     write_added(mesh, cavity, names);
     for (const Join& j : joins) {
         mesh.neighbour[names[j.added]][at(j.corner)] = j.neighbour;

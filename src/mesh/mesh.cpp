@@ -22,8 +22,8 @@ std::array<Vertex, 3> sorted(std::array<Vertex, 3> v) {
     return v;
 }
 
-/// The facets of all tets and the given boundary facets, grouped by their smallest vertex: a counting sort, as the
-/// groups are small.
+/// The facets of all tets and the given boundary facets, grouped by their smallest vertex: a counting sort,
+/// as the groups are small.
 struct FacetGroups {
     std::vector<FacetRecord> records;
     std::vector<std::size_t> first;  // per vertex, and one more
@@ -51,13 +51,17 @@ FacetGroups group_facets(const Mesh& mesh, std::span<const BoundaryFacet> bounda
     return groups;
 }
 
-void check_vertices(const Mesh& mesh) {
+void check_vertices(const Mesh& mesh, std::span<const BoundaryFacet> boundary) {
     const auto vertices = static_cast<std::int32_t>(mesh.position.size());
+    const auto check = [&](Vertex v, const char* what, auto number) {
+        if (v.value < 0 || v.value >= vertices)
+            throw FileError(what + std::to_string(number) + " has vertex " + std::to_string(v.value) +
+                            ", but there are " + std::to_string(vertices) + " vertices");
+    };
     for (Tet t : mesh.tets.indices())
-        for (Vertex v : mesh.tets[t])
-            if (v.value < 0 || v.value >= vertices)
-                throw FileError("cell " + std::to_string(t.value) + " has vertex " + std::to_string(v.value) +
-                                ", but there are " + std::to_string(vertices) + " vertices");
+        for (Vertex v : mesh.tets[t]) check(v, "cell ", t.value);
+    for (std::size_t i = 0; i < boundary.size(); ++i)
+        for (Vertex v : boundary[i].vertices) check(v, "boundary facet ", i);
 }
 
 /// Joins the records of one facet: two tets become neighbours, a boundary facet gives its patch.
@@ -72,7 +76,8 @@ void join(Mesh& mesh, std::span<const FacetRecord> same, std::span<const Boundar
         }
         if (count == 2)
             throw FileError("a facet of cell " + std::to_string(r.tet.value) + " already belongs to cells " +
-                            std::to_string(cells[0]->tet.value) + " and " + std::to_string(cells[1]->tet.value));
+                            std::to_string(cells[0]->tet.value) + " and " +
+                            std::to_string(cells[1]->tet.value));
         cells[count++] = &r;
     }
     if (count == 2) {
@@ -98,13 +103,13 @@ void find_neighbours(Mesh& mesh, std::span<const BoundaryFacet> boundary) {
 
 }  // namespace
 
-Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> tets, Array<Tet, Region> region,
-               std::span<const BoundaryFacet> boundary) {
+Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> tets,
+               Array<Tet, Region> region, std::span<const BoundaryFacet> boundary) {
     Mesh mesh;
     mesh.position = std::move(position);
     mesh.tets = std::move(tets);
     mesh.region = std::move(region);
-    check_vertices(mesh);
+    check_vertices(mesh, boundary);
     mesh.neighbour.resize(mesh.tets.size());
     mesh.patch.resize(mesh.tets.size());
     mesh.tet_at.resize(mesh.position.size());

@@ -11,22 +11,22 @@ namespace kropla {
 
 using Vertex = Index<struct VertexTag>;
 using Tet = Index<struct TetTag>;
-using Region = Index<struct RegionTag>;  ///< a named part of the volume: 0 the surroundings, 1, 2, ... the bodies
-using Patch = Index<struct PatchTag>;    ///< a named part of the boundary: 0 ... 5 the faces of the box
+using Region = Index<struct RegionTag>;  ///< a part of the volume: 0 the surroundings, 1, 2, ... the bodies
+using Patch = Index<struct PatchTag>;    ///< a part of the boundary: 0 ... 5 the faces of the box; up to 31
 
-/// Patches below this are plane, x min, x max, y min, ... z max: facets on them may be exchanged for others in the
-/// same plane. Facets of all other patches are to stay as they are.
+/// Patches below this are plane, x min, x max, y min, ... z max: facets on them may be exchanged for others
+/// in the same plane. Facets of all other patches are to stay as they are.
 inline constexpr int box_faces = 6;
 inline constexpr Region surroundings{0};
 
-/// A tetrahedral mesh as a value: copy it to keep it. Its invariant is `verify`; `replace_cells` is the only function
-/// that changes its connectivity. Interfaces are where regions differ; nothing else records them.
+/// A tetrahedral mesh as a value: copy it to keep it. Its invariant is `verify`; `replace_cells` is the only
+/// function that changes its connectivity. Interfaces are where regions differ; nothing else records them.
 ///
 /// Removed cells and vertices leave free slots, which later ones take, so that nothing else is renumbered:
 /// pass over them with `alive`.
 struct Mesh {
     Array<Vertex, Vec3> position;              // [m]
-    Array<Vertex, Tet> tet_at;                 // one tet of the vertex's ball, where a query starts; none: free slot
+    Array<Vertex, Tet> tet_at;                 // one tet of its ball, where a query starts; none: free slot
     Array<Tet, std::array<Vertex, 4>> tets;    // det(v1-v0, v2-v0, v3-v0) > 0; a free slot has no vertices
     Array<Tet, std::array<Tet, 4>> neighbour;  // across the facet opposite corner i, or none
     Array<Tet, std::array<Patch, 4>> patch;    // boundary patch of that facet, where there is no neighbour
@@ -53,9 +53,11 @@ struct BoundaryFacet {
     Patch patch;
 };
 
-/// Builds a mesh from cells by their vertices; neighbours are found by sorting facets. Boundary facets that are not
-/// in `boundary` get patch 0. Vertices of no tet become free slots. The tets are not checked: see `verify`.
-/// Throws FileError, naming the cell, if a facet has more than two cells or a vertex does not exist.
+/// Builds a mesh from cells by their vertices; neighbours are found by sorting facets. Boundary facets that
+/// are not in `boundary` get patch 0. Vertices of no tet become free slots. The tets are not checked: see
+/// `verify`.
+/// Throws FileError, naming the cell or boundary facet, if a facet has more than two cells or a vertex does
+/// not exist.
 [[nodiscard]] Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> tets,
                              Array<Tet, Region> region, std::span<const BoundaryFacet> boundary = {});
 

@@ -39,7 +39,7 @@ double worst_aspect_ratio(const Mesh& mesh, std::span<const Tet> tets) {
 
 QualitySummary summarise_quality(const Mesh& mesh, Region only) {
     QualitySummary summary;
-    summary.vertices = count_vertices(mesh);
+    Array<Vertex, char> seen(mesh.position.size(), 0);
     std::vector<double> ratios;
     ratios.reserve(mesh.tets.size());
     double sum = 0;
@@ -52,6 +52,7 @@ QualitySummary summarise_quality(const Mesh& mesh, Region only) {
             summary.worst = t;
         }
         ratios.push_back(ratio);
+        for (Vertex v : mesh.tets[t]) seen[v] = 1;
         sum += ratio;
         const auto angles = tet_dihedral_angles(a, b, c, d);
         const auto [least, largest] = std::ranges::minmax(angles);
@@ -59,6 +60,7 @@ QualitySummary summarise_quality(const Mesh& mesh, Region only) {
         summary.max_dihedral = std::max(summary.max_dihedral, largest * 180 / std::numbers::pi);
     }
     summary.tets = static_cast<int>(ratios.size());
+    summary.vertices = static_cast<int>(std::ranges::count(seen, 1));
     if (ratios.empty()) return summary;
     summary.mean_aspect_ratio = sum / static_cast<double>(ratios.size());
     const auto rank = static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(ratios.size() - 1));

@@ -22,7 +22,7 @@ struct QualitySummary {
     double min_dihedral = 180, max_dihedral = 0;
     Tet worst;  ///< the tet of the largest aspect ratio
 };
-/// Over all tets, or those of one region.
+/// Over all tets and their vertices, or those of one region.
 [[nodiscard]] QualitySummary summarise_quality(const Mesh& mesh, Region only = {});
 
 [[nodiscard]] double region_volume(const Mesh& mesh, Region region);  // [m^3]

@@ -19,8 +19,8 @@ std::array<Vertex, 2> opposite_edge(const Mesh& mesh, Tet t, Vertex a, Vertex b)
     return {mesh.tets[t][at(o[0])], mesh.tets[t][at(o[1])]};
 }
 
-/// Walks around the edge from `start` across the facet opposite `leaving`, until the boundary or `start` again.
-/// Calls `visit(t, entered)` for each further tet; `entered` is the vertex of it that the last tet had too.
+/// Walks around the edge from `start` across the facet opposite `leaving`, until the boundary or `start`
+/// again. Calls `visit(t, v)` for each further tet; `v` is the vertex of it that the last tet did not have.
 template <class Visit>
 bool walk_round(const Mesh& mesh, Edge e, Tet start, Vertex leaving, Vertex staying, Visit visit) {
     Tet t = start;

@@ -39,9 +39,10 @@ void ball(const Mesh& mesh, Vertex v, std::vector<Tet>& tets);
 /// The other ends of the edges at `v`, in ascending order.
 [[nodiscard]] std::vector<Vertex> adjacent_vertices(const Mesh& mesh, Vertex v);
 
-/// The tets around an edge, in order, and the vertices around it: tets[i] has the edge, ring[i] and ring[i + 1];
-/// det(b-a, ring[i]-a, ring[i+1]-a) > 0. Closed: the ring ends where it begins and that vertex stands once, so that
-/// there are as many tets as ring vertices. Open (an edge on the boundary): one ring vertex more than tets.
+/// The tets around an edge, in order, and the vertices around it. tets[i] has the edge, ring[i], ring[i+1];
+/// det(b-a, ring[i]-a, ring[i+1]-a) > 0. Closed: the ring ends where it begins and that vertex stands once,
+/// so that there are as many tets as ring vertices. Open (an edge on the boundary): one ring vertex more than
+/// tets.
 struct Shell {
     std::vector<Tet> tets;
     std::vector<Vertex> ring;
@@ -52,8 +53,8 @@ struct Shell {
 /// Nothing if `e` is not an edge of the mesh.
 [[nodiscard]] std::optional<Shell> shell(const Mesh& mesh, Edge e);
 
-/// What holds a vertex, an edge or a facet in its place: the boundary patches it lies on, as bits 1 << patch, and
-/// whether it lies on an interface between regions.
+/// What holds a vertex, an edge or a facet in its place: the boundary patches it lies on, as bits 1 << patch,
+/// and whether it lies on an interface between regions.
 struct Constraint {
     unsigned patches = 0;
     bool on_interface = false;

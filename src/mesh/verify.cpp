@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace kropla {
 namespace {
+
+constexpr Patch last_patch{31};  // a Constraint has a bit for each
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -68,8 +71,12 @@ std::string fault_of_orientation(const Mesh& mesh) {
 std::string fault_of_facet(const Mesh& mesh, Tet t, int i) {
     const Tet n = mesh.neighbour[t][at(i)];
     const bool on_boundary = mesh.patch[t][at(i)].exists();
-    if (!n.exists()) return on_boundary ? "" : cell(mesh, t) + ": " + facet(i) + " has neither neighbour nor patch";
-    if (on_boundary) return cell(mesh, t) + ": " + facet(i) + " has a neighbour and a patch";
+    if (mesh.patch[t][at(i)] > last_patch)
+        return cell(mesh, t) + ": " + facet(i) + " is of patch " +
+               std::to_string(mesh.patch[t][at(i)].value) + ", above " + std::to_string(last_patch.value);
+    if (!n.exists() && on_boundary) return {};
+    if (!n.exists()) return cell(mesh, t) + ": " + facet(i) + " has neither neighbour nor patch";
+    if (on_boundary) return cell(mesh, t) + ": " + facet(i) + " has both a neighbour and a patch";
     if (at(n.value) >= mesh.tets.size() || !alive(mesh, n))
         return cell(mesh, t) + ": across " + facet(i) + " is no cell";
     int shared = 0, mirror = -1;
@@ -90,19 +97,23 @@ std::string fault_of_neighbours(const Mesh& mesh) {
     return {};
 }
 
-/// Two boundary facets with the same vertices: cells that touch without being neighbours.
-std::string fault_of_boundary_facets(const Mesh& mesh) {
-    std::map<std::array<Vertex, 3>, Tet> seen;
+/// Two facets with the same vertices that are not the two sides of one: cells that touch without being
+/// neighbours, a third cell at a facet, a cell that is there twice.
+std::string fault_of_shared_facets(const Mesh& mesh) {
+    std::vector<std::pair<std::array<Vertex, 3>, Tet>> facets;
     for (Tet t : mesh.tets.indices())
         for (int i = 0; i < 4 && alive(mesh, t); ++i) {
-            if (mesh.neighbour[t][at(i)].exists()) continue;
+            if (mesh.neighbour[t][at(i)] > t) continue;  // once, from the later of its two cells
             auto key = facet_vertices(mesh, {t, i});
             std::ranges::sort(key);
-            if (const auto [other, is_new] = seen.emplace(key, t); !is_new)
-                return cell(mesh, t) + " and cell " + std::to_string(other->second.value) +
-                       " share a facet but are not neighbours";
+            facets.emplace_back(key, t);
         }
-    return {};
+    std::ranges::sort(facets);
+    const auto same_key = [](const auto& a, const auto& b) { return a.first == b.first; };
+    const auto found = std::ranges::adjacent_find(facets, same_key);
+    if (found == facets.end()) return {};
+    return cell(mesh, std::next(found)->second) + " and cell " + std::to_string(found->second.value) +
+           " share a facet but are not neighbours";
 }
 
 std::string fault_of_vertices(const Mesh& mesh) {
@@ -114,8 +125,8 @@ std::string fault_of_vertices(const Mesh& mesh) {
     for (Vertex v : mesh.position.indices()) {
         const std::string name = "vertex " + std::to_string(v.value);
         if (!alive(mesh, v)) {
-            if (cells[v] > 0) return name + " at " + place(mesh.position[v]) + " has cells but none is recorded";
-            continue;
+            if (cells[v] == 0) continue;
+            return name + " at " + place(mesh.position[v]) + " has cells but none is recorded";
         }
         if (at(mesh.tet_at[v].value) >= mesh.tets.size() || corner_of(mesh, mesh.tet_at[v], v) < 0)
             return name + ": the cell recorded for it does not have it";
@@ -126,44 +137,61 @@ std::string fault_of_vertices(const Mesh& mesh) {
     return {};
 }
 
-std::string fault_of_free_slots(const Mesh& mesh) {
-    Array<Tet, int> listed_tets(mesh.tets.size(), 0);
-    Array<Vertex, int> listed_vertices(mesh.position.size(), 0);
-    for (Tet t : mesh.free_tets) ++listed_tets[t];
-    for (Vertex v : mesh.free_vertices) ++listed_vertices[v];
-    for (Tet t : mesh.tets.indices())
-        if (listed_tets[t] != (alive(mesh, t) ? 0 : 1)) return "tet slot " + std::to_string(t.value) + " is listed wrongly";
-    for (Vertex v : mesh.position.indices())
-        if (listed_vertices[v] != (alive(mesh, v) ? 0 : 1))
-            return "vertex slot " + std::to_string(v.value) + " is listed wrongly";
+/// Each free slot is listed once, and nothing else is.
+template <class I, class T>
+std::string fault_of_list(const Mesh& mesh, const std::vector<I>& list, const Array<I, T>& slots,
+                          const char* what) {
+    Array<I, int> listed(slots.size(), 0);
+    for (I i : list) {
+        if (i.value < 0 || at(i.value) >= slots.size())
+            return std::string("a free ") + what + " slot is listed that does not exist";
+        ++listed[i];
+    }
+    for (I i : slots.indices())
+        if (listed[i] != (alive(mesh, i) ? 0 : 1))
+            return what + (" slot " + std::to_string(i.value)) + " is listed as free " +
+                   std::to_string(listed[i]) + " times, but is " + (alive(mesh, i) ? "taken" : "free");
     return {};
 }
 
-/// The surface of a region is closed if each of its edges has an even number of its facets: two where it is a
-/// manifold, four where it touches itself along an edge.
-std::string fault_of_region_surfaces(const Mesh& mesh) {
-    struct Key {
-        Region region;
-        Vertex a, b;
-        auto operator<=>(const Key&) const = default;
-    };
-    std::map<Key, int> facets_at;
+std::string fault_of_free_slots(const Mesh& mesh) {
+    auto fault = fault_of_list(mesh, mesh.free_tets, mesh.tets, "tet");
+    return fault.empty() ? fault_of_list(mesh, mesh.free_vertices, mesh.position, "vertex") : fault;
+}
+
+/// An edge of the surface of a region, or (no region) of the boundary of the whole.
+struct SurfaceEdge {
+    Region region;
+    Vertex a, b;
+    auto operator<=>(const SurfaceEdge&) const = default;
+};
+
+void append_edges(std::vector<SurfaceEdge>& edges, Region region, const std::array<Vertex, 3>& facet) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto [a, b] = std::minmax(facet[k], facet[(k + 1) % 3]);
+        edges.push_back({region, a, b});
+    }
+}
+
+/// A surface that is closed and does not touch itself has two facets at each edge.
+std::string fault_of_surfaces(const Mesh& mesh) {
+    std::vector<SurfaceEdge> edges;
     for (Tet t : mesh.tets.indices())
         for (int i = 0; i < 4 && alive(mesh, t); ++i) {
             const Tet n = mesh.neighbour[t][at(i)];
             if (n.exists() && mesh.region[n] == mesh.region[t]) continue;
-            const auto v = facet_vertices(mesh, {t, i});
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto [a, b] = std::minmax(v[k], v[(k + 1) % 3]);
-                ++facets_at[{mesh.region[t], a, b}];
-            }
+            append_edges(edges, mesh.region[t], facet_vertices(mesh, {t, i}));
+            if (!n.exists()) append_edges(edges, Region{}, facet_vertices(mesh, {t, i}));
         }
-    for (const auto& [key, count] : facets_at) {
-        const std::string where = "the surface of region " + std::to_string(key.region.value) + " at edge " +
-                                  std::to_string(key.a.value) + "-" + std::to_string(key.b.value) + " near " +
-                                  place((mesh.position[key.a] + mesh.position[key.b]) / 2);
-        if (count % 2 != 0) return where + " is not closed";
-        if (count > 2) return where + " touches itself";
+    std::ranges::sort(edges);
+    for (auto begin = edges.begin(), end = begin; begin != edges.end(); begin = end) {
+        end = std::upper_bound(begin, edges.end(), *begin);
+        if (end - begin == 2) continue;
+        const auto [region, a, b] = *begin;
+        const auto whose = region.exists() ? "surface of region " + std::to_string(region.value) : "boundary";
+        return "the " + whose + ((end - begin) % 2 == 0 ? " touches itself" : " is not closed") +
+               " at edge " + std::to_string(a.value) + "-" + std::to_string(b.value) + " near " +
+               place((mesh.position[a] + mesh.position[b]) / 2);
     }
     return {};
 }
@@ -172,8 +200,8 @@ std::string fault_of_region_surfaces(const Mesh& mesh) {
 
 std::string verify(const Mesh& mesh) {
     for (const auto check : {fault_of_sizes, fault_of_indices, fault_of_orientation, fault_of_neighbours,
-                             fault_of_boundary_facets, fault_of_vertices, fault_of_free_slots,
-                             fault_of_region_surfaces})
+                             fault_of_shared_facets, fault_of_vertices, fault_of_free_slots,
+                             fault_of_surfaces})
         if (auto fault = check(mesh); !fault.empty()) return fault;
     return {};
 }

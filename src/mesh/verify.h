@@ -6,11 +6,12 @@
 
 namespace kropla {
 
-/// Checks every rule a mesh lives by, and names the first that is broken, with the cell's number and place; empty if
-/// all hold. Rules: indices exist; tets positively oriented (exact predicate); facets of no more than two cells;
-/// neighbours mutual and sharing their facet; a patch on each boundary facet and on no other; `tet_at` right; free
-/// slots listed; every closed edge shell and vertex ball in one piece, the boundary and each region's surface a
-/// closed surface. Sees the whole mesh: for tests, `check` and debug runs.
+/// Checks every rule a mesh lives by, and names the first that is broken, with the cell's number and place;
+/// empty if all hold. Rules: indices exist; tets positively oriented (exact predicate); facets of no more
+/// than two cells; neighbours mutual and sharing their facet; a patch on each boundary facet and on no other;
+/// `tet_at` right; free slots listed; the cells at each vertex in one piece; the boundary and each region's
+/// surface closed and nowhere touching themselves along an edge. Sees the whole mesh: for tests, `check` and
+/// debug runs.
 [[nodiscard]] std::string verify(const Mesh& mesh);
 
 }  // namespace kropla
