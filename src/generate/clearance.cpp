@@ -1,0 +1,30 @@
+// What points keep from the boundaries.
+
+#include "generate/clearance.h"
+
+#include "generate/box.h"
+
+#include <algorithm>
+
+namespace kropla {
+
+double clearance(const Snapshot& at, const Vec3& x) {
+    const double size = target_size(at, x);
+    return std::min(distance_to_walls(at.box, x) - clearance_at_walls * size,
+                    distance_to_bodies(at, x) - clearance_at_bodies * size);
+}
+
+double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x) {
+    Box widened = at.box;  // so that the face itself does not count
+    const int axis = patch.value / 2;
+    const double width = at.box.max[axis] - at.box.min[axis];
+    widened.min[axis] -= at.size.far + width;
+    widened.max[axis] += at.size.far + width;
+    return distance_to_walls(widened, x) - clearance_at_walls * target_size(at, x);
+}
+
+double clearance_slope(const Snapshot& at) {
+    return 1 + std::max(clearance_at_walls, clearance_at_bodies) * at.size.growth;
+}
+
+}  // namespace kropla

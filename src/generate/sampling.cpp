@@ -1,0 +1,177 @@
+// Maximal random samples with a spacing that varies.
+//
+// After [Ebeida, Mitchell, Patney, Davidson, Owens 2012, "A simple algorithm for maximal Poisson-disk sampling in high
+// dimensions"]: cells that are not yet covered are thrown at, then those left are split, until none is left. Changed:
+// the spacing varies in space, so the first cells are the leaves of an octree as fine as the spacing asks, and a cell
+// counts as covered with what the slope of the spacing takes away. A room may be flat: its cells split within it.
+
+#include "generate/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kropla {
+
+namespace {
+
+std::uint64_t slot_hash(int level, std::int64_t i, std::int64_t j, std::int64_t k) {
+    const auto mixed = static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15ULL ^
+                       static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4FULL ^
+                       static_cast<std::uint64_t>(k) * 0x165667B19E3779F9ULL ^
+                       static_cast<std::uint64_t>(level) * 0xD6E8FEB86659FD93ULL;
+    return mixed ^ (mixed >> 29);
+}
+
+/// Points whose spacing is in [2^level, 2^(level + 1)) are filed in cells of the upper bound's width.
+double cell_width(int level) { return std::ldexp(1.0, level + 1); }
+
+std::int64_t cell_number(double x, double width) { return static_cast<std::int64_t>(std::floor(x / width)); }
+
+}  // namespace
+
+void PointGrid::insert(const Vec3& x, double spacing) {
+    const int level = std::ilogb(spacing);
+    lowest_level_ = entries_.empty() ? level : std::min(lowest_level_, level);
+    highest_level_ = entries_.empty() ? level : std::max(highest_level_, level);
+    entries_.push_back({x, level, -1});
+    if (entries_.size() <= slots_.size()) return file(static_cast<std::int32_t>(entries_.size() - 1));
+    slots_.assign(2 * slots_.size(), -1);
+    for (std::size_t i = 0; i < entries_.size(); ++i) file(static_cast<std::int32_t>(i));
+}
+
+void PointGrid::file(std::int32_t entry) {
+    Entry& e = entries_[static_cast<std::size_t>(entry)];
+    const double width = cell_width(e.level);
+    const std::uint64_t hash = slot_hash(e.level, cell_number(e.place.x, width), cell_number(e.place.y, width),
+                                         cell_number(e.place.z, width));
+    std::int32_t& slot = slots_[hash & (slots_.size() - 1)];
+    e.next = std::exchange(slot, entry);
+}
+
+bool PointGrid::any_within(const Vec3& x, double radius, double least, double greatest) const {
+    if (!(radius > 0)) return false;
+    const int lowest = least > 0 ? std::max(lowest_level_, std::ilogb(least)) : lowest_level_;
+    const int highest = std::min(highest_level_, std::ilogb(greatest));
+    for (int level = highest; level >= lowest; --level)
+        if (any_within_at(level, x, radius)) return true;
+    return false;
+}
+
+bool PointGrid::any_within_at(int level, const Vec3& x, double radius) const {
+    const double width = cell_width(level);
+    std::array<std::int64_t, 3> first = {}, last = {};
+    for (int axis = 0; axis < 3; ++axis) {
+        first[static_cast<std::size_t>(axis)] = cell_number(x[axis] - radius, width);
+        last[static_cast<std::size_t>(axis)] = cell_number(x[axis] + radius, width);
+    }
+    for (std::int64_t i = first[0]; i <= last[0]; ++i)
+        for (std::int64_t j = first[1]; j <= last[1]; ++j)
+            for (std::int64_t k = first[2]; k <= last[2]; ++k)
+                for (std::int32_t e = slots_[slot_hash(level, i, j, k) & (slots_.size() - 1)]; e >= 0;) {
+                    const Entry& entry = entries_[static_cast<std::size_t>(e)];
+                    if (entry.level == level && squared_norm(entry.place - x) < radius * radius) return true;
+                    e = entry.next;
+                }
+    return false;
+}
+
+namespace {
+
+struct Cell {
+    Vec3 centre, half;  // half its widths; 0 where the room is flat [m]
+};
+
+/// The two to eight cells that a cell splits into, only across its long axes so that they tend to cubes.
+void split_cell(const Cell& cell, std::vector<Cell>& into) {
+    const double longest = std::max({cell.half.x, cell.half.y, cell.half.z});
+    std::array<Cell, 8> parts = {cell};
+    std::size_t count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (cell.half[axis] <= 0.5 * longest) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+            parts[i].half[axis] *= 0.5;
+            parts[count + i] = parts[i];
+            parts[i].centre[axis] -= parts[i].half[axis];
+            parts[count + i].centre[axis] += parts[i].half[axis];
+        }
+        count *= 2;
+    }
+    into.insert(into.end(), parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+bool is_crowded(const SampleRule& rule, const PointGrid& taken, const Vec3& x, double radius, double spacing) {
+    const double change = rule.spacing_slope * radius;
+    return taken.any_within(x, radius, spacing - change, spacing + change);
+}
+
+/// No point of the cell could be accepted: for want of clearance, or since one neighbour is too near to all of it.
+/// Says yes only where that is sure.
+bool is_covered(const SampleRule& rule, const PointGrid& taken, const Cell& cell) {
+    const double reach = norm(cell.half);
+    if (rule.clearance(cell.centre) + rule.clearance_slope * reach < 0) return true;
+    const double spacing = rule.spacing(cell.centre);
+    return is_crowded(rule, taken, cell.centre, spacing - (1 + rule.spacing_slope) * reach, spacing);
+}
+
+/// The cells in which to begin: no larger than the spacing there, and not covered.
+std::vector<Cell> first_cells(const Box& room, const SampleRule& rule, const PointGrid& taken) {
+    std::vector<Cell> open = {{0.5 * (room.min + room.max), 0.5 * (room.max - room.min)}}, fine;
+    while (!open.empty()) {
+        const Cell cell = open.back();
+        open.pop_back();
+        if (is_covered(rule, taken, cell)) continue;
+        if (norm(cell.half) > 0.75 * rule.spacing(cell.centre)) split_cell(cell, open);
+        else fine.push_back(cell);
+    }
+    return fine;
+}
+
+void shuffle_cells(std::vector<Cell>& cells, Random& random) {
+    for (std::size_t i = cells.size(); i > 1; --i) std::swap(cells[i - 1], cells[random.below(i)]);
+}
+
+/// A random point of the cell, kept within the room against rounding.
+Vec3 random_point(const Cell& cell, const Box& room, Random& random) {
+    Vec3 x;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double at = cell.centre[axis] + cell.half[axis] * random.uniform(-1, 1);
+        x[axis] = std::clamp(at, room.min[axis], room.max[axis]);
+    }
+    return x;
+}
+
+/// The parts of the cells that are open still and wide enough to matter.
+std::vector<Cell> open_parts(const std::vector<Cell>& cells, const SampleRule& rule, const PointGrid& taken) {
+    constexpr double narrowest_gap = 1e-4;  // of the spacing
+    std::vector<Cell> parts, open;
+    for (const Cell& cell : cells) {
+        if (is_covered(rule, taken, cell)) continue;
+        parts.clear();
+        split_cell(cell, parts);
+        for (const Cell& part : parts)
+            if (norm(part.half) > narrowest_gap * rule.spacing(part.centre) && !is_covered(rule, taken, part))
+                open.push_back(part);
+    }
+    return open;
+}
+
+}  // namespace
+
+std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken, Random& random) {
+    std::vector<Vec3> found;
+    for (std::vector<Cell> open = first_cells(room, rule, taken); !open.empty();) {
+        shuffle_cells(open, random);
+        for (const Cell& cell : open) {
+            const Vec3 x = random_point(cell, room, random);
+            const double spacing = rule.spacing(x);
+            if (rule.clearance(x) < 0 || is_crowded(rule, taken, x, spacing, spacing)) continue;
+            taken.insert(x, spacing);
+            found.push_back(x);
+        }
+        open = open_parts(open, rule, taken);
+    }
+    return found;
+}
+
+}  // namespace kropla

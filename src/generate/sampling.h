@@ -1,0 +1,50 @@
+#pragma once
+
+#include "base/random.h"
+#include "domain/domain.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace kropla {
+
+/// Points filed by place and by the spacing they stand at, to answer: is one of them within r of x? One hash table
+/// for a pile of grids, each for the spacings of one power of two, so that neither the range of spacings nor empty
+/// space costs anything.
+class PointGrid {
+public:
+    void insert(const Vec3& x, double spacing);
+
+    /// Is a point nearer to `x` than `radius`? Points filed with a spacing outside [least, greatest] are not seen.
+    [[nodiscard]] bool any_within(const Vec3& x, double radius, double least, double greatest) const;
+
+private:
+    struct Entry {
+        Vec3 place;
+        int level;
+        std::int32_t next;  // in the same slot, or -1
+    };
+    void file(std::int32_t entry);
+    [[nodiscard]] bool any_within_at(int level, const Vec3& x, double radius) const;
+
+    std::vector<Entry> entries_;
+    std::vector<std::int32_t> slots_ = std::vector<std::int32_t>(64, -1);
+    int lowest_level_ = 0, highest_level_ = -1;
+};
+
+/// What a maximal sample obeys: a point x stands only where clearance(x) >= 0, and is refused if another stands
+/// nearer than spacing(x). The slopes bound how fast both change.
+struct SampleRule {
+    std::function<double(const Vec3&)> spacing;    // r [m]
+    double spacing_slope = 0;                      // [-]
+    std::function<double(const Vec3&)> clearance;  // [m]
+    double clearance_slope = 1;                    // [-]
+};
+
+/// Fills `room`, which may be flat, with random points until none can be added, but in gaps narrower than 1e-4
+/// spacings. The new points are filed in `taken`, whose points count as neighbours.
+[[nodiscard]] std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken, Random& random);
+
+}  // namespace kropla

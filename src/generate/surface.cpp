@@ -1,0 +1,97 @@
+// Triangulated surfaces of ellipsoids.
+//
+// As many points as the area asks for are scattered by relaxed dart throwing [McCool, Fiume 1992, "Hierarchical Poisson
+// disk sampling distributions"] and joined by the hull of them all; then the skin is relaxed (skin.cpp).
+
+#include "base/random.h"
+#include "generate/generate.h"
+#include "generate/sampling.h"
+#include "generate/skin.h"
+#include "mesh/cells.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace kropla {
+
+namespace {
+
+/// How much the unit sphere's surface is stretched in its point `n` where it becomes the ellipsoid's [m^2].
+double stretch(const Vec3& a, const Vec3& n) { return norm({a.y * a.z * n.x, a.x * a.z * n.y, a.x * a.y * n.z}); }
+
+/// By the midpoint rule on bands of equal height; for axes of 10 : 1, right to 0.1 %.
+double surface_area(const Vec3& semi_axes) {
+    constexpr int bands = 100, steps = 100;
+    double sum = 0;
+    for (int i = 0; i < bands; ++i)
+        for (int k = 0; k < steps; ++k) {
+            const double z = (2 * i + 1.0) / bands - 1, r = std::sqrt(1 - z * z);
+            const double turn = 2 * std::numbers::pi * (k + 0.5) / steps;
+            sum += stretch(semi_axes, {r * std::cos(turn), r * std::sin(turn), z});
+        }
+    return 4 * std::numbers::pi * sum / (bands * steps);
+}
+
+/// A random point of the surface, evenly by area.
+Vec3 random_surface_point(const Shape& shape, Random& random) {
+    const Vec3& a = shape.semi_axes;
+    const double most = std::max({a.y * a.z, a.x * a.z, a.x * a.y});
+    for (;;) {
+        const double z = random.uniform(-1, 1), turn = 2 * std::numbers::pi * random.uniform();
+        const double r = std::sqrt(1 - z * z);
+        const Vec3 n = {r * std::cos(turn), r * std::sin(turn), z};
+        if (random.uniform() * most <= stretch(a, n))
+            return shape.centre + rotated(shape.orientation, {a.x * n.x, a.y * n.y, a.z * n.z});
+    }
+}
+
+/// `count` points of the surface as far apart as darts will have it: the distance kept falls with each failure.
+std::vector<Vec3> scatter(const Shape& shape, int count, double size, Random& random) {
+    const double fall = 1 - 0.02 / count;  // per failure: some ten darts are thrown per point
+    std::vector<Vec3> points;
+    PointGrid taken;
+    for (double apart = size; static_cast<int>(points.size()) < count;) {
+        const Vec3 x = random_surface_point(shape, random);
+        if (taken.any_within(x, apart, size, size)) {
+            apart *= fall;
+        } else {
+            taken.insert(x, size);
+            points.push_back(x);
+        }
+    }
+    return points;
+}
+
+/// The hull of points on the surface: with a point inside among them, all tets stand on it and none is flat.
+Surface hull(const std::vector<Vec3>& points, const Vec3& inside) {
+    std::vector<Vec3> all = {inside};
+    all.insert(all.end(), points.begin(), points.end());
+    const Triangulation filled = triangulate(all);
+    Surface surface{points, {}};
+    for (Tet t : filled.tets.indices())
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (filled.neighbour[t][i].exists()) continue;
+            const auto corner = [&](std::size_t k) {
+                return filled.tets[t][static_cast<std::size_t>(tet_facets[i][k])].value - 1;
+            };
+            surface.triangles.push_back({corner(0), corner(1), corner(2)});
+        }
+    return surface;
+}
+
+}  // namespace
+
+Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed) {
+    assert(size > 0 && size <= least_curvature_radius(shape));
+    // Equilateral triangles of edge h have 0.866 h^2 of area per vertex.
+    const double wanted = surface_area(shape.semi_axes) / (std::sqrt(0.75) * size * size);
+    Random random{seed};
+    const std::vector<Vec3> points = scatter(shape, static_cast<int>(std::lround(wanted)), size, random);
+    Skin skin = make_skin(hull(points, shape.centre), shape.centre);
+    relax_skin(skin, shape);
+    return surface_of(skin);
+}
+
+}  // namespace kropla
