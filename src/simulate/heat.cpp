@@ -1,0 +1,85 @@
+// The heat equation's options, initial state and energy; its step is in heat_step.cpp.
+#include "simulate/heat.h"
+
+#include "base/error.h"
+#include "simulate/elements.h"
+#include "simulate/partition.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace kropla {
+namespace {
+
+constexpr std::array<const char*, 6> face_names = {"x min", "x max", "y min", "y max", "z min", "z max"};
+
+std::string of_region(std::size_t region) {
+    return region == 0 ? " of the surroundings" : " of body " + std::to_string(region);
+}
+
+std::string text(double value) {
+    std::ostringstream out;
+    out << value;
+    return out.str();
+}
+
+void check_positive(double value, const std::string& key, std::size_t region) {
+    if (std::isfinite(value) && value > 0) return;
+    throw CaseError("heat." + key + of_region(region) + " must be positive, got " + text(value));
+}
+
+void check_region(const HeatRegion& region, std::size_t number) {
+    check_positive(region.material.conductivity, "conductivity", number);
+    check_positive(region.material.density, "density", number);
+    check_positive(region.material.specific_heat, "specific_heat", number);
+    if (!std::isfinite(region.initial)) {
+        throw CaseError("heat.initial" + of_region(number) + " must be finite, got " + text(region.initial));
+    }
+}
+
+}  // namespace
+
+void check_heat(const HeatOptions& options, const Mesh& mesh) {
+    for (std::size_t i = 0; i < options.regions.size(); ++i) check_region(options.regions[i], i);
+    std::size_t needed = 0;
+    for (Tet t : living_tets(mesh)) needed = std::max(needed, static_cast<std::size_t>(mesh.region[t].value) + 1);
+    if (options.regions.size() < needed) {
+        throw CaseError("heat: the mesh has " + std::to_string(needed) + " regions, materials are given for " +
+                        std::to_string(options.regions.size()));
+    }
+    for (std::size_t f = 0; f < options.faces.size(); ++f) {
+        const HeatFace& face = options.faces[f];
+        if (face.kind == HeatFace::Kind::insulated || face.quantity) continue;
+        const bool is_value = face.kind == HeatFace::Kind::value;
+        throw CaseError(std::string("heat.") + (is_value ? "value" : "flux") + " of face " + face_names[f] +
+                        " is not given");
+    }
+}
+
+NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
+    check_heat(options, mesh);
+    NodalField field{"temperature", "K", Array<Vertex, double>(mesh.position.size(), 0.0)};
+    Array<Vertex, Region> region(mesh.position.size());
+    for (Tet t : living_tets(mesh)) {
+        for (Vertex v : mesh.tets[t]) region[v] = std::max(region[v], mesh.region[t]);
+    }
+    for (Vertex v : mesh.position.indices()) {
+        if (region[v].exists()) field.values[v] = options.regions[static_cast<std::size_t>(region[v].value)].initial;
+    }
+    return field;
+}
+
+double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature, Region only) {
+    double sum = 0;
+    for (Tet t : living_tets(mesh, only)) {
+        const HeatMaterial& m = options.regions[static_cast<std::size_t>(mesh.region[t].value)].material;
+        double corners_sum = 0;
+        for (Vertex v : mesh.tets[t]) corners_sum += temperature[v];
+        sum += m.density * m.specific_heat * linear_tet(corners(mesh, t)).volume * corners_sum / 4;
+    }
+    return sum;
+}
+
+}  // namespace kropla

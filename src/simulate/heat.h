@@ -1,0 +1,92 @@
+#pragma once
+
+#include "mesh/mesh.h"
+#include "simulate/fields.h"
+#include "simulate/petsc.h"
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace kropla {
+
+// The heat equation on a moving mesh, material by region:
+//     rho c (dT/dt + u . grad T) = div(k grad T) + s.
+//
+// With linear shape functions phi_i that move with the mesh (velocity w), with div u = 0, and with u.n = w.n where a
+// region ends, it reads, region by region, in conservative form
+//     d/dt integral(rho c T phi_i) = integral(rho c T (u - w) . grad phi_i) - integral(k grad T . grad phi_i) + load_i.
+// Backward Euler, masses lumped (M = rho c V/4 per corner of each tet):
+//     M1 T1 - M0 T0 = dt (C - K) T1 + dt load,   C_ij = mean over the step of integral(rho c phi_j (u - w).grad phi_i).
+// First order in time, second in space. K, the load and values at the boundary are taken at the end of the step.
+//
+// It keeps energy: the phi_i sum to one, so that every column of C and K sums to zero, and the masses gain what the
+// load brings. It keeps a constant state: for T = 1 the mesh's part of C and the change of mass leave
+//     (M1 - M0)_i + dt integral(rho c w.grad phi_i) = dt rho c F_i,   F_i = integral(phi_i w.n) over the boundary,
+// an identity at every instant that holds for the step as well, since its means over time are exact (elements.h). In
+// a body w = u and nothing is left. Around bodies F_i is not zero, and gas at rest would go through their surface;
+// instead it flows as they push it, u = grad Phi with integral(grad Phi.grad phi_i) = F_i (flow_potential.h). So the
+// flow's part of C makes up for F_i, exactly.
+//
+// Where cells are too coarse for the convection, SUPG: the residual without diffusion (linear elements have none),
+// rho c (dT/dt + v.grad T) - s, is weighted with tau v.grad phi_i, v the mean of u - w over the tet. It is zero for a
+// constant state and its weights sum to zero: both properties hold.
+
+/// A quantity at a place [m] and a time [s].
+using Quantity = std::function<double(const Vec3& place, double t)>;
+
+struct HeatMaterial {
+    double conductivity = 1;   // [W/(m K)]
+    double density = 1;        // [kg/m^3]
+    double specific_heat = 1;  // [J/(kg K)]
+};
+
+/// How the material of a region moves.
+enum class Carried {
+    with_mesh,  ///< as the mesh does: a body, which moves as a whole and keeps the volume of each of its cells
+    at_rest,    ///< it rests, but for making way for the bodies that move in it
+};
+
+struct HeatRegion {
+    HeatMaterial material = {};
+    Carried carried = Carried::at_rest;
+    double initial = 0;    // [K]
+    Quantity source = {};  // [W/m^3]; empty: none
+};
+
+struct HeatFace {
+    enum class Kind { insulated, value, flux } kind = Kind::insulated;
+    Quantity quantity = {};  // the value [K], or the flux into the domain [W/m^2]
+};
+
+struct HeatOptions {
+    std::vector<HeatRegion> regions;     // region 0 (the surroundings), 1, ...
+    std::array<HeatFace, 6> faces = {};  // x min, x max, y min, y max, z min, z max
+};
+
+/// Throws CaseError, naming the key below `heat`, if a material is not positive, an initial value not finite, a face
+/// without its quantity, or a region of the mesh without its material.
+void check_heat(const HeatOptions& options, const Mesh& mesh);
+
+/// "temperature" [K], the initial value of each region; a body's at its surface.
+[[nodiscard]] NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options);
+
+struct HeatReport {
+    int iterations = 0;            // for the temperature
+    double residual = 0;           // [-] |b - A T| / |b|
+    int potential_iterations = 0;  // for the flow that makes way for the bodies
+};
+
+/// Takes the temperature from t [s] on `before` to t + dt on `current`: the same connectivity. At a vertex of several
+/// faces with values, the first of them holds. All ranks call it together with the same arguments, and all get the
+/// whole field. The solver's options are -ksp_type, -ksp_rtol, -pc_type and so on.
+/// Throws CaseError as check_heat, or if dt is not positive or a quantity not finite; SolverError if the solver does
+/// not converge. Then `temperature` is untouched.
+HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
+                     NodalField& temperature, double t, double dt);
+
+/// The integral of rho c T [J], of all regions or of one.
+[[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,
+                            Region only = {});
+
+}  // namespace kropla

@@ -1,0 +1,25 @@
+#include "session.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace kropla {
+namespace {
+
+std::unique_ptr<PetscSession> session;
+
+class Petsc : public testing::Environment {
+    void SetUp() override { session = std::make_unique<PetscSession>(); }
+    void TearDown() override { session.reset(); }
+};
+
+[[maybe_unused]] const auto* const environment = testing::AddGlobalTestEnvironment(new Petsc);
+
+}  // namespace
+
+const PetscSession& petsc() {
+    return *session;
+}
+
+}  // namespace kropla
