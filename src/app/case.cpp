@@ -1,0 +1,195 @@
+// Reading a case file: every key is checked here, once, so that the rest of the program may trust a Case.
+#include "app/case.h"
+
+#include "app/case_heat.h"
+#include "app/case_table.h"
+#include "base/error.h"
+#include "io/file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace kropla {
+namespace {
+
+constexpr int most_steps = 1'000'000;  // a frame per step would be terabytes
+
+Box read_box(const CaseTable& table) {
+    table.allow({"min", "max"});
+    const Box box{table.vec3("min"), table.vec3("max")};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (box.min[axis] < box.max[axis]) continue;
+        table.refuse("max", fmt::format("must be above min, got {} = {} where min has {}", "xyz"[axis],
+                                          box.max[axis], box.min[axis]));
+    }
+    return box;
+}
+
+std::string read_name(const CaseTable& table, const std::vector<Body>& before) {
+    const std::string name = table.text("name");
+    if (name.empty()) table.refuse_value("name", "must not be empty");
+    if (name == "surroundings") table.refuse("name", "\"surroundings\" is the name of the rest of the box");
+    const auto same = std::ranges::find(before, name, &Body::name);
+    if (same != before.end()) {
+        table.refuse("name", fmt::format("{} is the name of body[{}] already; names must differ", toml_text(name),
+                                           same - before.begin()));
+    }
+    return name;
+}
+
+Shape read_sphere(const CaseTable& table) {
+    if (table.has("axes")) table.refuse("axes", "a sphere has a radius instead");
+    if (table.has("rotation")) table.refuse("rotation", "a sphere has none");
+    const double radius = table.positive("radius");
+    return {table.vec3("centre"), {radius, radius, radius}, {}};
+}
+
+Shape read_ellipsoid(const CaseTable& table, WrittenBody& written) {
+    if (table.has("radius")) table.refuse("radius", "an ellipsoid has axes = [a, b, c] instead");
+    const Vec3 axes = table.vec3("axes");
+    if (!(axes.x > 0 && axes.y > 0 && axes.z > 0)) table.refuse_value("axes", "must all be positive");
+    Shape shape{table.vec3("centre"), axes, {}};
+    if (table.has("rotation")) {
+        const std::vector<double> r = table.numbers("rotation", 4, "[axis x, y, z, degrees]");
+        const Vec3 axis{r[0], r[1], r[2]};
+        if (!(norm(axis) > 0)) table.refuse_value("rotation", "must have an axis that is not zero");
+        shape.orientation = rotation_about(axis, r[3] * std::numbers::pi / 180);
+        written.rotation = fmt::format("[{}]", fmt::join(r, ", "));
+    }
+    return shape;
+}
+
+Shape read_shape(const CaseTable& table, WrittenBody& written) {
+    written.shape = table.text("shape");
+    if (written.shape == "sphere") return read_sphere(table);
+    if (written.shape == "ellipsoid") return read_ellipsoid(table, written);
+    table.refuse_value("shape", "must be \"sphere\" or \"ellipsoid\"");
+}
+
+Motion read_motion(const CaseTable& table, WrittenBody& written) {
+    constexpr std::array<std::string_view, 3> axes = {"x", "y", "z"};
+    table.allow({"x", "y", "z"});
+    std::vector<Expression> path;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Formula formula = table.has(axes[i]) ? table.formula(axes[i], Variables::time)
+                                                     : Formula{Expression("0"), "0"};
+        path.push_back(formula.value);
+        written.motion[i] = formula.written;
+    }
+    return [path](double t) { return Pose{{path[0](t), path[1](t), path[2](t)}, {}}; };
+}
+
+void read_bodies(const CaseTable& file, Case& it) {
+    for (const CaseTable& table : file.tables("body")) {
+        table.allow({"name", "shape", "centre", "radius", "axes", "rotation", "motion", "layer"});
+        if (table.has("layer")) table.refuse("layer", "prism layers are not available yet; leave it out");
+        WrittenBody written;
+        Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
+        if (table.has("motion")) body.motion = read_motion(table.table("motion"), written);
+        it.domain.bodies.push_back(std::move(body));
+        it.written_bodies.push_back(std::move(written));
+    }
+}
+
+SizeField read_size(const CaseTable& table) {
+    table.allow({"surface", "growth", "far"});
+    SizeField size;
+    size.surface = table.positive("surface");
+    size.far = table.positive("far");
+    if (table.has("growth")) size.growth = table.number("growth");
+    if (!(size.growth >= 0 && size.growth <= 1)) table.refuse_value("growth", "must be from 0 to 1");
+    if (size.far < size.surface) {
+        table.refuse_value("far", fmt::format("must be at least surface = {}", size.surface));
+    }
+    return size;
+}
+
+QualityFloor read_quality(const CaseTable& table) {
+    table.allow({"max_aspect_ratio"});
+    QualityFloor quality;
+    if (table.has("max_aspect_ratio")) quality.max_aspect_ratio = table.number("max_aspect_ratio");
+    if (!(quality.max_aspect_ratio > 3)) {
+        table.refuse_value("max_aspect_ratio", "must be above 3, which is a perfect tet");
+    }
+    return quality;
+}
+
+TimePlan read_time(const CaseTable& table) {
+    table.allow({"end", "steps"});
+    return {table.positive("end"), static_cast<int>(table.integer("steps", 1, most_steps))};
+}
+
+OutputPlan read_output(const CaseTable& table) {
+    table.allow({"every"});
+    return table.has("every") ? OutputPlan{static_cast<int>(table.integer("every", 1, most_steps))}
+                                : OutputPlan{};
+}
+
+RandomSeed read_random(const CaseTable& table) {
+    table.allow({"seed"});
+    constexpr auto most = std::numeric_limits<std::int64_t>::max();
+    return table.has("seed") ? RandomSeed{static_cast<std::uint64_t>(table.integer("seed", 0, most))}
+                               : RandomSeed{};
+}
+
+/// The domain with all sizes taken `factor` times, to two digits.
+Domain coarsened(const Domain& domain, double factor) {
+    const auto two_digits = [](double x) { return std::stod(fmt::format("{:.1e}", x)); };
+    Domain coarser = domain;
+    coarser.size.surface = two_digits(factor * domain.size.surface);
+    coarser.size.far = two_digits(factor * domain.size.far);
+    return coarser;
+}
+
+/// Throws if the size asks for too many tets, with a coarser one that would do.
+void check_count(const CaseTable& file, const Domain& domain) {
+    const double tets = estimate_tets(domain);
+    if (tets <= most_tets) return;
+    const Vec3 span = domain.box.max - domain.box.min;
+    double too_fine = 0, will_do = std::log(std::max({span.x, span.y, span.z}) / domain.size.surface);
+    for (int halving = 0; halving < 24; ++halving) {
+        const double middle = (too_fine + will_do) / 2;
+        (estimate_tets(coarsened(domain, std::exp(middle))) <= most_tets ? will_do : too_fine) = middle;
+    }
+    const SizeField size = coarsened(domain, std::exp(will_do)).size;
+    file.refuse("size", fmt::format("asks for about {:.1e} tets, more than {:.0e}; surface = {} and far = {} would do",
+                                    tets, most_tets, size.surface, size.far));
+}
+
+toml::table parse(std::string_view text, const std::string& name) {
+    try {
+        return toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        throw CaseError(fmt::format("{}: (line {}): is not TOML: {}", name, error.source().begin.line,
+                                    error.description()));
+    }
+}
+
+}  // namespace
+
+Case parse_case(std::string_view text, const std::string& name) {
+    const toml::table table = parse(text, name);
+    const CaseTable file(name, "", table);
+    file.allow({"domain", "body", "size", "quality", "time", "heat", "output", "random"});
+    Case it;
+    it.domain.box = read_box(file.table("domain"));
+    read_bodies(file, it);
+    it.domain.size = read_size(file.table("size"));
+    if (file.has("quality")) it.quality = read_quality(file.table("quality"));
+    it.time = read_time(file.table("time"));
+    if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
+    if (file.has("output")) it.output = read_output(file.table("output"));
+    if (file.has("random")) it.random = read_random(file.table("random"));
+    check_count(file, it.domain);
+    return it;
+}
+
+Case read_case(const std::filesystem::path& path) {
+    return parse_case(read_file(path), path.string());
+}
+
+}  // namespace kropla

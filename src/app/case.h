@@ -1,0 +1,75 @@
+#pragma once
+
+#include "domain/domain.h"
+#include "simulate/heat.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kropla {
+
+/// What no accepted step may exceed.
+struct QualityFloor {
+    double max_aspect_ratio = 10;  // [-] R/r, above 3 (a perfect tet)
+};
+
+struct TimePlan {
+    double end = 0;  // [s], positive
+    int steps = 1;   // wanted, at least 1; a step may be cut, the sum is kept
+};
+
+struct OutputPlan {
+    int every = 1;  // [-] steps between frames, at least 1
+};
+
+struct RandomSeed {
+    std::uint64_t seed = 1;
+};
+
+/// How the user put what the structs of a case hold in another form, each as a TOML value: `300`, `"-1.0*t"`,
+/// `{ flux = 1e4 }`. Empty: not given.
+struct WrittenBody {
+    std::string shape;                  // "sphere" or "ellipsoid", without quotes
+    std::string rotation;
+    std::array<std::string, 3> motion;  // all empty: at rest
+};
+struct WrittenHeat {
+    std::vector<std::string> sources;  // per region
+    std::array<std::string, 6> faces;  // per face of the box
+};
+
+/// All that a run is told, SI units.
+struct Case {
+    Domain domain;
+    QualityFloor quality;
+    TimePlan time;
+    std::optional<HeatOptions> heat;  // nothing: the mesh moves, nothing is simulated
+    OutputPlan output;
+    RandomSeed random;
+
+    std::vector<WrittenBody> written_bodies;  // per body
+    WrittenHeat written_heat;
+};
+
+/// The most tets that a case may ask for: beyond, a run would take days and the memory of a large machine.
+inline constexpr double most_tets = 2e7;
+
+/// Reads a case file (TOML; its keys are explained in docs and in what `kropla new` writes).
+/// Throws FileError if the file cannot be read, and CaseError, naming file, key, line, value and what would be right,
+/// if anything in it is wrong, missing or unknown, or if it asks for more than `most_tets`.
+[[nodiscard]] Case read_case(const std::filesystem::path& path);
+/// As above, from the text itself; `name` stands for the file in refusals.
+[[nodiscard]] Case parse_case(std::string_view text, const std::string& name);
+
+/// The case as it is run, defaults filled in, as a case file that reads as the same case again.
+[[nodiscard]] std::string to_toml(const Case& it);
+
+/// About how many tets the domain's mesh will have at t = 0: the integral of the size field's tets per volume.
+[[nodiscard]] double estimate_tets(const Domain& domain);
+
+}  // namespace kropla

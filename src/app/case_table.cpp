@@ -1,0 +1,205 @@
+// Reading the tables of a case file, and the one-line refusals of what is wrong in them.
+#include "app/case_table.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace kropla {
+namespace {
+
+/// A value as a refusal shows it.
+std::string shown(const toml::node& node) {
+    if (const auto text = node.value_exact<std::string>()) return toml_text(*text);
+    if (const auto number = node.value<double>(); number && node.is_number()) return fmt::format("{}", *number);
+    if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
+    if (node.is_table()) return "a table";
+    if (const toml::array* array = node.as_array()) {
+        std::vector<std::string> items;
+        for (const toml::node& item : *array) items.push_back(shown(item));
+        return fmt::format("[{}]", fmt::join(items, ", "));
+    }
+    return "a date or time";
+}
+
+std::optional<double> finite_number(const toml::node& node) {
+    if (!node.is_number()) return {};
+    const auto number = node.value<double>();
+    return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+}  // namespace
+
+CaseTable::CaseTable(std::string file, std::string name, const toml::table& table)
+    : file_(std::move(file)), name_(std::move(name)), table_(&table) {}
+
+void CaseTable::allow(std::initializer_list<std::string_view> keys) const {
+    allow(std::vector<std::string>(keys.begin(), keys.end()));
+}
+
+void CaseTable::allow(const std::vector<std::string>& keys) const {
+    const toml::key* first = nullptr;  // in the file
+    for (const auto& [key, value] : *table_) {
+        if (std::ranges::find(keys, key.str()) != keys.end()) continue;
+        if (first == nullptr || key.source().begin < first->source().begin) first = &key;
+    }
+    if (first == nullptr) return;
+    throw CaseError(fmt::format("{}: {} (line {}): unknown key; {}", file_, full_name(first->str()),
+                                first->source().begin.line, suggestion(first->str(), keys)));
+}
+
+bool CaseTable::has(std::string_view key) const { return table_->contains(key); }
+bool CaseTable::holds_text(std::string_view key) const { return has(key) && table_->get(key)->is_string(); }
+bool CaseTable::holds_table(std::string_view key) const { return has(key) && table_->get(key)->is_table(); }
+
+double CaseTable::number(std::string_view key, std::string_view must) const {
+    const auto value = finite_number(node(key, must));
+    if (!value) refuse_value(key, "must be a finite number");
+    return *value;
+}
+
+double CaseTable::number(std::string_view key) const { return number(key, "must be a finite number"); }
+
+double CaseTable::positive(std::string_view key) const {
+    const double value = number(key, "must be positive");
+    if (!(value > 0)) refuse_value(key, "must be positive");
+    return value;
+}
+
+std::int64_t CaseTable::integer(std::string_view key, std::int64_t least, std::int64_t most) const {
+    const std::string must = fmt::format("must be a whole number from {} to {}", least, most);
+    const auto value = node(key, must).value_exact<std::int64_t>();
+    if (!value || *value < least || *value > most) refuse_value(key, must);
+    return *value;
+}
+
+std::string CaseTable::text(std::string_view key) const {
+    const auto value = node(key, "must be a text in quotes").value_exact<std::string>();
+    if (!value) refuse_value(key, "must be a text in quotes");
+    return *value;
+}
+
+std::vector<double> CaseTable::numbers(std::string_view key, std::size_t count, std::string_view meaning) const {
+    const std::string must = fmt::format("must be {} finite numbers {}", count, meaning);
+    std::vector<double> values;
+    const toml::array* array = node(key, must).as_array();
+    for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+        if (const auto value = finite_number(*array->get(i))) values.push_back(*value);
+    }
+    if (array == nullptr || values.size() != count || array->size() != count) refuse_value(key, must);
+    return values;
+}
+
+Vec3 CaseTable::vec3(std::string_view key) const {
+    const std::vector<double> v = numbers(key, 3, "[x, y, z]");
+    return {v[0], v[1], v[2]};
+}
+
+Formula CaseTable::formula(std::string_view key, Variables variables, const Vec3& probe) const {
+    constexpr std::string_view must = "must be a finite number or an expression in quotes";
+    const toml::node& value = node(key, must);
+    if (const auto constant = finite_number(value)) {
+        const std::string written = toml_number(*constant);
+        return {Expression(written, variables), written};
+    }
+    const auto text = value.value_exact<std::string>();
+    if (!text) refuse_value(key, must);
+    Expression expression = compiled(key, *text, variables);
+    const double at_start = expression(0, probe);
+    if (!std::isfinite(at_start)) {
+        refuse(key, fmt::format("must be finite, but {} is {} at t = 0", toml_text(*text),
+                                std::isnan(at_start) ? "not a number" : "infinite"));
+    }
+    return {std::move(expression), toml_text(*text)};
+}
+
+Expression CaseTable::compiled(std::string_view key, const std::string& text, Variables variables) const {
+    try {
+        return Expression(text, variables);
+    } catch (const CaseError& error) {
+        refuse(key, error.what());
+    }
+}
+
+CaseTable CaseTable::table(std::string_view key) const {
+    const std::string must = fmt::format("must be a table [{}]", full_name(key));
+    const toml::table* table = node(key, must).as_table();
+    if (table == nullptr) refuse_value(key, must);
+    return {file_, full_name(key), *table};
+}
+
+std::vector<CaseTable> CaseTable::tables(std::string_view key) const {
+    std::vector<CaseTable> found;
+    if (!has(key)) return found;
+    const toml::array* array = table_->get(key)->as_array();
+    if (array == nullptr || (!array->empty() && !array->is_homogeneous(toml::node_type::table))) {
+        refuse_value(key, fmt::format("must be tables, each under [[{}]]", full_name(key)));
+    }
+    for (std::size_t i = 0; i < array->size(); ++i) {
+        found.emplace_back(file_, fmt::format("{}[{}]", full_name(key), i), *array->get(i)->as_table());
+    }
+    return found;
+}
+
+void CaseTable::refuse(std::string_view key, std::string_view what) const {
+    const toml::node* value = table_->get(key);
+    const auto line = (value != nullptr ? value->source() : table_->source()).begin.line;
+    const bool whole_file = value == nullptr && name_.empty();
+    throw CaseError(fmt::format("{}: {}{}: {}", file_, full_name(key),
+                                whole_file ? "" : fmt::format(" (line {})", line), what));
+}
+
+void CaseTable::refuse_value(std::string_view key, std::string_view must) const {
+    refuse(key, fmt::format("{}, got {}", must, shown(node(key, must))));
+}
+
+const toml::node& CaseTable::node(std::string_view key, std::string_view must) const {
+    const toml::node* value = table_->get(key);
+    if (value == nullptr) refuse(key, fmt::format("is missing; it {}", must));
+    return *value;
+}
+
+std::string CaseTable::full_name(std::string_view key) const {
+    return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
+}
+
+std::string toml_number(double value) { return fmt::format("{}", value); }
+
+std::string toml_text(std::string_view text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') quoted += {'\\', c};
+        else if (code < 0x20 || code == 0x7f) quoted += fmt::format("\\u{:04x}", code);
+        else quoted += c;
+    }
+    return quoted + '"';
+}
+
+int edit_distance(std::string_view a, std::string_view b) {
+    std::vector<int> row(b.size() + 1);  // from the letters of `a` so far to each beginning of `b`
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        int diagonal = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const int changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+    const auto far = [&](const std::string& key) { return edit_distance(word, key); };
+    const auto nearest = std::ranges::min_element(known, {}, far);
+    const int reach = std::max(1, static_cast<int>(word.size()) / 3);  // a slip or two, not another word
+    if (nearest != known.end() && far(*nearest) <= reach) return fmt::format("did you mean \"{}\"?", *nearest);
+    return fmt::format("known here: {}", fmt::join(known, ", "));
+}
+
+}  // namespace kropla

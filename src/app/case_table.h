@@ -1,0 +1,84 @@
+#pragma once
+
+#include "app/expression.h"
+#include "base/vec3.h"
+
+#include <toml++/toml.h>
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kropla {
+
+/// A number or an expression of the case file, and how it stands there: `300`, or `"1e4*sin(t)"` with its quotes.
+struct Formula {
+    Expression value;
+    std::string written;
+};
+
+/// A table of the case file while it is read: it knows the file, its own name and line, and refuses what is wrong
+/// with one line, "FILE: body[0].radius (line 12): must be positive, got -1". Every question throws CaseError like
+/// this if the key is missing or its value is not what is asked for.
+class CaseTable {
+public:
+    /// `name` is the table's own, as in "body[0]"; empty for the file itself. It outlives this object.
+    CaseTable(std::string file, std::string name, const toml::table& table);
+
+    /// Throws if there is a key that is not one of these, and suggests the one that was meant.
+    void allow(std::initializer_list<std::string_view> keys) const;
+    void allow(const std::vector<std::string>& keys) const;
+
+    [[nodiscard]] bool has(std::string_view key) const;
+
+    /// A finite number.
+    [[nodiscard]] double number(std::string_view key) const;
+    [[nodiscard]] double positive(std::string_view key) const;
+    /// From `least` to `most`.
+    [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t least, std::int64_t most) const;
+    [[nodiscard]] std::string text(std::string_view key) const;
+    /// Three finite numbers.
+    [[nodiscard]] Vec3 vec3(std::string_view key) const;
+    /// As many finite numbers; `meaning` names them in a refusal.
+    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, std::string_view meaning) const;
+    /// Finite at t = 0 and `probe`.
+    [[nodiscard]] Formula formula(std::string_view key, Variables variables, const Vec3& probe = {}) const;
+
+    [[nodiscard]] CaseTable table(std::string_view key) const;
+    /// The tables of [[key]], in order; none if the key is missing.
+    [[nodiscard]] std::vector<CaseTable> tables(std::string_view key) const;
+    /// If the value is a text or a table.
+    [[nodiscard]] bool holds_text(std::string_view key) const;
+    [[nodiscard]] bool holds_table(std::string_view key) const;
+
+    /// Throws: what is wrong with the value of `key`, or with its being there or not.
+    [[noreturn]] void refuse(std::string_view key, std::string_view what) const;
+    /// Throws: what the value of `key` must be, and what was found: "must be positive, got -1" or "is missing; it must
+    /// be positive".
+    [[noreturn]] void refuse_value(std::string_view key, std::string_view must) const;
+
+private:
+    [[nodiscard]] const toml::node& node(std::string_view key, std::string_view must) const;
+    [[nodiscard]] double number(std::string_view key, std::string_view must) const;
+    [[nodiscard]] std::string full_name(std::string_view key) const;
+    [[nodiscard]] Expression compiled(std::string_view key, const std::string& text, Variables variables) const;
+
+    std::string file_, name_;
+    const toml::table* table_;
+};
+
+/// The words that TOML reads as this number (to full precision), or this text.
+[[nodiscard]] std::string toml_number(double value);
+[[nodiscard]] std::string toml_text(std::string_view text);
+
+/// How many letters must be changed, added or dropped to make one word of the other [Levenshtein 1966].
+[[nodiscard]] int edit_distance(std::string_view a, std::string_view b);
+/// `did you mean "radius"?` if one of the words is near; else `known here: centre, radius`.
+[[nodiscard]] std::string suggestion(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace kropla

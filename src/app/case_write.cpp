@@ -1,0 +1,62 @@
+// The case as it is run, written so that it reads as the same case again.
+#include "app/case.h"
+
+#include "app/case_heat.h"
+#include "app/case_table.h"
+
+#include <fmt/format.h>
+
+namespace kropla {
+namespace {
+
+std::string vec3(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+std::string body(const Body& it, const WrittenBody& written) {
+    std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\ncentre = {}\n", toml_text(it.name),
+                                   written.shape, vec3(it.shape.centre));
+    if (written.shape == "sphere") {
+        text += fmt::format("radius = {}\n", it.shape.semi_axes.x);
+    } else {
+        text += fmt::format("axes = {}\n", vec3(it.shape.semi_axes));
+        if (!written.rotation.empty()) text += fmt::format("rotation = {}\n", written.rotation);
+    }
+    const auto& [x, y, z] = written.motion;
+    if (!x.empty()) text += fmt::format("[body.motion]\nx = {}\ny = {}\nz = {}\n", x, y, z);
+    return text;
+}
+
+std::string heat(const HeatOptions& it, const Domain& domain, const WrittenHeat& written) {
+    std::string text;
+    for (std::size_t r = 0; r < it.regions.size(); ++r) {
+        const HeatRegion& region = it.regions[r];
+        const HeatMaterial& material = region.material;
+        text += fmt::format("\n[heat.region.{}]\nconductivity = {}\ndensity = {}\nspecific_heat = {}\ninitial = {}\n",
+                            toml_text(region_name(domain, r)), material.conductivity, material.density,
+                            material.specific_heat, region.initial);
+        if (!written.sources[r].empty()) text += fmt::format("source = {}\n", written.sources[r]);
+    }
+    text += "\n[heat.face]\n";
+    for (std::size_t f = 0; f < face_keys.size(); ++f) {
+        text += fmt::format("{} = {}\n", face_keys[f], written.faces[f]);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string to_toml(const Case& it) {
+    std::string text = "# The case as run, defaults filled in. Lengths in metres, times in seconds.\n";
+    text += fmt::format("\n[domain]\nmin = {}\nmax = {}\n", vec3(it.domain.box.min), vec3(it.domain.box.max));
+    for (std::size_t b = 0; b < it.domain.bodies.size(); ++b) {
+        text += body(it.domain.bodies[b], it.written_bodies[b]);
+    }
+    const SizeField& size = it.domain.size;
+    text += fmt::format("\n[size]\nsurface = {}\ngrowth = {}\nfar = {}\n", size.surface, size.growth, size.far);
+    text += fmt::format("\n[quality]\nmax_aspect_ratio = {}\n", it.quality.max_aspect_ratio);
+    text += fmt::format("\n[time]\nend = {}\nsteps = {}\n", it.time.end, it.time.steps);
+    if (it.heat) text += heat(*it.heat, it.domain, it.written_heat);
+    text += fmt::format("\n[output]\nevery = {}\n\n[random]\nseed = {}\n", it.output.every, it.random.seed);
+    return text;
+}
+
+}  // namespace kropla

@@ -1,0 +1,191 @@
+// The command line: CLI11 reads it; every exception ends here, as one line and an exit code.
+#include "app/commands.h"
+
+#include "app/check.h"
+#include "app/initial_mesh.h"
+#include "app/new_case.h"
+#include "app/run.h"
+#include "app/run_folder.h"
+#include "base/error.h"
+#include "io/vtk.h"
+#include "mesh/quality.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <exception>
+
+namespace kropla {
+namespace {
+
+constexpr int path_samples_per_step = 8;  // a body may not slip through another between two looks
+
+struct MeshOptions {
+    std::filesystem::path case_file, out;
+};
+
+int run_case(const RunOptions& options) {
+    check_run_folder(options);
+    return run(options);
+}
+
+int write_initial_mesh(const MeshOptions& options) {
+    if (options.out.extension() != ".vtu") {
+        throw CaseError(fmt::format("{}: the mesh is written as VTU; name a file that ends in .vtu",
+                                    options.out.string()));
+    }
+    const Case it = read_case(options.case_file);
+    check_paths(it.domain, 0, it.time.end, path_samples_per_step * it.time.steps + 1);
+    const Mesh mesh = initial_mesh(it);
+    write_vtu(options.out, mesh);
+    const QualitySummary quality = summarise_quality(mesh);
+    fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
+               options.out.string(), quality.tets, quality.vertices, quality.max_aspect_ratio, quality.min_dihedral,
+               quality.max_dihedral);
+    return done;
+}
+
+int check_mesh(const std::filesystem::path& file) {
+    const CheckReport report = check_file(file);
+    fmt::print("{}", report.text);
+    return report.valid ? done : file_trouble;
+}
+
+int start_case(const std::string& name) {
+    const std::filesystem::path path = write_new_case(name);
+    fmt::print("{0}: written. Change it as you like, then: kropla run {0} --out {1}\n", path.string(),
+               path.stem().string());
+    return done;
+}
+
+/// What was asked for, as CLI11 fills it in.
+struct Request {
+    RunOptions run;
+    MeshOptions mesh;
+    std::filesystem::path file;
+    std::string name;
+};
+
+void describe_run(CLI::App& app, RunOptions& options) {
+    CLI::App* run = app.add_subcommand("run", "Runs a case: frames, steps.csv and a checkpoint go into a folder");
+    run->add_option("CASE", options.case_file, "the case file (TOML; see `kropla new`)")->required();
+    run->add_option("--out", options.out, "the folder that the run fills")->required()->type_name("DIR");
+    run->add_flag("--resume", options.resume, "go on from the checkpoint in the folder");
+    run->add_option("--threads", options.threads, "threads to use (else one per processor); the results are the same")
+        ->check(CLI::Range(1, 4096))->type_name("N");
+    run->footer("PETSc's options reach it untouched; put them last:\n"
+                "  kropla run droplet.toml --out droplet -ksp_monitor -ksp_rtol 1e-10\n"
+                "Several processes share the solution: mpirun -n 2 kropla run droplet.toml --out droplet\n"
+                "Look at the result: paraview droplet/frames.pvd");
+}
+
+void describe_others(CLI::App& app, Request& request) {
+    CLI::App* mesh = app.add_subcommand("mesh", "Writes the initial mesh of a case, and nothing more");
+    mesh->add_option("CASE", request.mesh.case_file, "the case file")->required();
+    mesh->add_option("-o,--output", request.mesh.out, "the VTU file to write")->required()->type_name("FILE");
+    mesh->footer("Example: kropla mesh droplet.toml -o droplet.vtu");
+
+    CLI::App* check = app.add_subcommand("check", "Tells whether a mesh is valid, and how good it is");
+    check->add_option("FILE", request.file, "a VTU file, for example a frame of a run")->required();
+    check->footer("Example: kropla check droplet/frames/00010.vtu\nExit code: 0 valid, 5 not");
+
+    CLI::App* start = app.add_subcommand("new", "Writes a commented case to start from");
+    start->add_option("NAME", request.name, "of the case: NAME.toml is written")->required();
+    start->footer("Example: kropla new droplet");
+}
+
+void describe(CLI::App& app, Request& request) {
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "kropla " KROPLA_VERSION);
+    app.set_help_all_flag("--help-all", "Print the help of all commands");
+    describe_run(app, request.run);
+    describe_others(app, request);
+    app.footer("Example:\n"
+               "  kropla new droplet\n"
+               "  kropla run droplet.toml --out droplet\n"
+               "  paraview droplet/frames.pvd\n"
+               "Exit codes: 0 done, 2 bad arguments or case, 3 the mesh cannot keep its floors, 4 the solver failed,\n"
+               "5 file trouble, 130 interrupted with a checkpoint written.");
+}
+
+int dispatch(const CLI::App& app, const Request& request) {
+    if (app.got_subcommand("run")) return run_case(request.run);
+    if (app.got_subcommand("mesh")) return write_initial_mesh(request.mesh);
+    if (app.got_subcommand("check")) return check_mesh(request.file);
+    return start_case(request.name);
+}
+
+int complain(const std::string& what, int code) {
+    std::string line = what;
+    std::ranges::replace(line, '\n', ' ');
+    fmt::print(stderr, "kropla: {}\n", line);
+    return code;
+}
+
+/// Carries a request out. Bodies that do not fit are a fault of the case, which is named.
+int carry_out(const CLI::App& app, const Request& request) {
+    try {
+        return dispatch(app, request);
+    } catch (const CaseError& error) {
+        return complain(error.what(), bad_case);
+    } catch (const DomainError& error) {
+        const auto& file = app.got_subcommand("run") ? request.run.case_file : request.mesh.case_file;
+        return complain(fmt::format("{}: {}", file.string(), error.what()), bad_case);
+    } catch (const FloorError& error) {
+        return complain(error.what(), floors_unreachable);
+    } catch (const SolverError& error) {
+        return complain(error.what(), solver_failed);
+    } catch (const FileError& error) {
+        return complain(error.what(), file_trouble);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return complain(fmt::format("{}: {}", error.path1().string(), error.code().message()), file_trouble);
+    }
+}
+
+}  // namespace
+
+PartedArguments part_arguments(const std::vector<std::string>& arguments) {
+    constexpr std::array<std::string_view, 9> beginnings = {"-ksp_", "-pc_", "-mat_", "-vec_", "-log_",
+                                                            "-sub_", "-potential_", "-options_", "-malloc_"};
+    const auto is_solvers = [&](std::string_view word) {
+        return std::ranges::any_of(beginnings, [&](std::string_view b) { return word.starts_with(b); });
+    };
+    const auto is_value = [](const std::string& word) {  // -1e-3 is a value, -ksp_monitor and --out are not
+        return word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])) || word[1] == '.';
+    };
+    PartedArguments parted;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        if (!is_solvers(arguments[i])) {
+            parted.others.push_back(arguments[i]);
+            continue;
+        }
+        parted.solver.push_back(arguments[i]);
+        if (i + 1 < arguments.size() && is_value(arguments[i + 1])) parted.solver.push_back(arguments[++i]);
+    }
+    return parted;
+}
+
+int execute(std::vector<std::string> arguments) {
+    Request request;
+    CLI::App app("Kropla: finite-element simulation on a 3D mesh that follows moving boundaries", "kropla");
+    describe(app, request);
+    PartedArguments parted = part_arguments(arguments);
+    std::ranges::reverse(parted.others);  // CLI11 takes them from the back
+    try {
+        app.parse(parted.others);
+    } catch (const CLI::Success& asked) {  // --help, --version
+        return app.exit(asked);
+    } catch (const CLI::ParseError& error) {
+        return complain(fmt::format("{} (see kropla --help)", error.what()), bad_case);
+    }
+    if (!parted.solver.empty() && !app.got_subcommand("run")) {
+        return complain(fmt::format("{} is an option of `kropla run`", parted.solver.front()), bad_case);
+    }
+    request.run.solver_options = parted.solver;
+    return carry_out(app, request);
+}
+
+}  // namespace kropla

@@ -1,0 +1,173 @@
+// Every refusal of a case file, word for word: one line that names file, key, line and value, and what would be right.
+#include "app/case.h"
+#include "base/error.h"
+#include "case_text.h"
+
+#include <gtest/gtest.h>
+
+namespace kropla {
+namespace {
+
+struct Spoiled {
+    std::string_view from, to, refusal;
+};
+
+/// What is said of a text; empty if it is a right case.
+std::string refusal(const std::string& text) {
+    try {
+        (void)parse_case(text, "case.toml");
+    } catch (const CaseError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+void expect_refusals(std::initializer_list<Spoiled> all) {
+    for (const Spoiled& s : all) {
+        EXPECT_EQ(refusal(replaced(full_case, s.from, s.to)), "case.toml: " + std::string(s.refusal)) << s.to;
+    }
+}
+
+TEST(CaseErrors, UnknownKeysComeWithASuggestion) {
+    expect_refusals({
+        {"radius =", "radus =", "body[0].radus (line 8): unknown key; did you mean \"radius\"?"},
+        {"centre =", "center =", "body[0].center (line 7): unknown key; did you mean \"centre\"?"},
+        {"[size]", "[sizes]", "sizes (line 19): unknown key; did you mean \"size\"?"},
+        {"growth = 0.15", "slope = 0.15", "size.slope (line 21): unknown key; known here: surface, growth, far"},
+        {"z = \"-1.0*t\"", "w = 1", "body[0].motion.w (line 12): unknown key; did you mean \"x\"?"},
+        {"[heat.region.droplet]", "[heat.region.drop]",
+         "heat.region.drop (line 33): unknown key; known here: surroundings, droplet, egg \"2\""},
+        {"initial = 300\n", "inital = 300\n",
+         "heat.region.surroundings.inital (line 32): unknown key; did you mean \"initial\"?"},
+        {"x_min =", "xmin =", "heat.face.xmin (line 45): unknown key; did you mean \"x_min\"?"},
+        {"{ flux =", "{ fluxx =", "heat.face.y_max.fluxx (line 46): unknown key; did you mean \"flux\"?"},
+        {"seed =", "sead =", "random.sead (line 51): unknown key; did you mean \"seed\"?"},
+    });
+}
+
+TEST(CaseErrors, MissingKeys) {
+    expect_refusals({
+        {"radius = 0.001\n", "", "body[0].radius (line 4): is missing; it must be positive"},
+        {"name = \"droplet\"\n", "", "body[0].name (line 4): is missing; it must be a text in quotes"},
+        {"[time]\nend = 0.01\nsteps = 40\n", "", "time: is missing; it must be a table [time]"},
+        {"steps = 40\n", "", "time.steps (line 25): is missing; it must be a whole number from 1 to 1000000"},
+        {"density = 7000\n", "", "heat.region.droplet.density (line 33): is missing; it must be positive"},
+        {"surface = 3e-4\n", "", "size.surface (line 19): is missing; it must be positive"},
+    });
+}
+
+TEST(CaseErrors, WrongTypes) {
+    expect_refusals({
+        {"radius = 0.001", "radius = \"big\"", "body[0].radius (line 8): must be a finite number, got \"big\""},
+        {"name = \"droplet\"", "name = 3", "body[0].name (line 5): must be a text in quotes, got 3"},
+        {"centre = [0.0, 0.0, 0.013]", "centre = [0, 0]",
+         "body[0].centre (line 7): must be 3 finite numbers [x, y, z], got [0, 0]"},
+        {"centre = [0.0, 0.0, 0.013]", "centre = [0, 0, nan]",
+         "body[0].centre (line 7): must be 3 finite numbers [x, y, z], got [0, 0, nan]"},
+        {"steps = 40", "steps = 40.5", "time.steps (line 27): must be a whole number from 1 to 1000000, got 40.5"},
+        {"[quality]\nmax_aspect_ratio = 9.5", "[[quality]]\nmax_aspect_ratio = 9.5",
+         "quality (line 23): must be a table [quality], got [a table]"},
+        {"x = \"0.0003*sin(4*pi*t/0.01)\"", "x = true",
+         "body[0].motion.x (line 10): must be a finite number or an expression in quotes, got true"},
+        {"z_min = \"insulated\"", "z_min = 300",
+         "heat.face.z_min (line 47): must be \"insulated\", { value = ... } [K] or { flux = ... } [W/m^2], got 300"},
+        {"{ value = 300 }", "{ value = 300, flux = 1 }",
+         "heat.face.x_min (line 45): must have either a value [K] or a flux [W/m^2]"},
+    });
+    EXPECT_EQ(refusal("body = 3\n"), "case.toml: domain: is missing; it must be a table [domain]");
+    EXPECT_EQ(refusal(replaced(replaced(full_case, "[[body]]", "[body.a]"), "[[body]]", "[body.b]")),
+              "case.toml: body (line 4): must be tables, each under [[body]], got a table");
+}
+
+TEST(CaseErrors, ValuesOutOfRange) {
+    expect_refusals({
+        {"radius = 0.001", "radius = -1", "body[0].radius (line 8): must be positive, got -1"},
+        {"radius = 0.001", "radius = 0.0", "body[0].radius (line 8): must be positive, got 0"},
+        {"radius = 0.001", "radius = nan", "body[0].radius (line 8): must be a finite number, got nan"},
+        {"radius = 0.001", "radius = inf", "body[0].radius (line 8): must be a finite number, got inf"},
+        {"axes = [1e-3, 0.8e-3, 0.7e-3]", "axes = [1e-3, 0.8e-3, 0]",
+         "body[1].axes (line 17): must all be positive, got [0.001, 0.0008, 0]"},
+        {"rotation = [0, 1, 1, 30.0]", "rotation = [0, 0, 0, 30.0]",
+         "body[1].rotation (line 18): must have an axis that is not zero, got [0, 0, 0, 30]"},
+        {"rotation = [0, 1, 1, 30.0]", "rotation = [0, 0, 1]",
+         "body[1].rotation (line 18): must be 4 finite numbers [axis x, y, z, degrees], got [0, 0, 1]"},
+        {"max = [ 0.004,  0.004, 0.016]", "max = [ 0.004,  -0.004, 0.016]",
+         "domain.max (line 3): must be above min, got y = -0.004 where min has -0.004"},
+        {"surface = 3e-4", "surface = -3e-4", "size.surface (line 20): must be positive, got -0.0003"},
+        {"growth = 0.15", "growth = 1.5", "size.growth (line 21): must be from 0 to 1, got 1.5"},
+        {"far = 7e-4", "far = 2e-4", "size.far (line 22): must be at least surface = 0.0003, got 0.0002"},
+        {"max_aspect_ratio = 9.5", "max_aspect_ratio = 3",
+         "quality.max_aspect_ratio (line 24): must be above 3, which is a perfect tet, got 3"},
+        {"end = 0.01", "end = 0", "time.end (line 26): must be positive, got 0"},
+        {"steps = 40", "steps = 0", "time.steps (line 27): must be a whole number from 1 to 1000000, got 0"},
+        {"steps = 40", "steps = 2000000",
+         "time.steps (line 27): must be a whole number from 1 to 1000000, got 2000000"},
+        {"conductivity = 0.02", "conductivity = 0",
+         "heat.region.surroundings.conductivity (line 29): must be positive, got 0"},
+        {"every = 5", "every = 0", "output.every (line 49): must be a whole number from 1 to 1000000, got 0"},
+        {"seed = 9223372036854775807", "seed = -1",
+         "random.seed (line 51): must be a whole number from 0 to 9223372036854775807, got -1"},
+    });
+}
+
+TEST(CaseErrors, Bodies) {
+    expect_refusals({
+        {"\"droplet\"", "\"\"", "body[0].name (line 5): must not be empty, got \"\""},
+        {"\"droplet\"", "\"surroundings\"",
+         "body[0].name (line 5): \"surroundings\" is the name of the rest of the box"},
+        {"name = \"egg \\\"2\\\"\"", "name = \"droplet\"",
+         "body[1].name (line 14): \"droplet\" is the name of body[0] already; names must differ"},
+        {"\"sphere\"", "\"cube\"", "body[0].shape (line 6): must be \"sphere\" or \"ellipsoid\", got \"cube\""},
+        {"\"sphere\"", "\"ellipsoid\"", "body[0].radius (line 8): an ellipsoid has axes = [a, b, c] instead"},
+        {"\"ellipsoid\"", "\"sphere\"", "body[1].axes (line 17): a sphere has a radius instead"},
+        {"[body.motion]", "[body.layer]\ncount = 4\n[body.motion]",
+         "body[0].layer (line 9): prism layers are not available yet; leave it out"},
+    });
+}
+
+TEST(CaseErrors, Expressions) {
+    const auto motion = [](const std::string& x) {
+        return refusal(replaced(full_case, "\"0.0003*sin(4*pi*t/0.01)\"", "\"" + x + "\""));
+    };
+    const std::string place = "case.toml: body[0].motion.x (line 10): ";
+    EXPECT_EQ(motion("1+*t"), place + "\"1+*t\": \"*\" at character 3 is out of place");
+    EXPECT_EQ(motion("2*x"), place + "\"2*x\": \"x\" at character 3 is not known; known are t, pi and functions such "
+                                     "as sin, exp, sqrt");
+    EXPECT_EQ(motion("sqrt(t-1)"), place + "must be finite, but \"sqrt(t-1)\" is not a number at t = 0");
+    EXPECT_EQ(motion("1/t"), place + "must be finite, but \"1/t\" is infinite at t = 0");
+    EXPECT_EQ(motion(""), place + "\"\": an expression is missing");
+    EXPECT_EQ(refusal(replaced(full_case, "1e4*sin(t)", "1e4*sin(t")),
+              "case.toml: heat.face.y_max.flux (line 46): \"1e4*sin(t\": \")\" is missing at the end");
+    EXPECT_EQ(refusal(replaced(full_case, "1e6*x*t", "1e6*u*t")),
+              "case.toml: heat.region.droplet.source (line 38): \"1e6*u*t + y - z\": \"u\" at character 5 is not known; "
+              "known are t, x, y, z, pi and functions such as sin, exp, sqrt");
+}
+
+TEST(CaseErrors, NotToml) {
+    const std::string said = refusal(replaced(full_case, "radius = 0.001", "radius = "));
+    EXPECT_EQ(said.substr(0, said.find("TOML: ")), "case.toml: (line 8): is not ");
+    EXPECT_EQ(said.find('\n'), std::string::npos);
+}
+
+TEST(CaseErrors, MoreTetsThanAMachineHolds) {
+    const std::string fine = refusal(replaced(full_case, "surface = 3e-4", "surface = 4e-6"));
+    EXPECT_EQ(fine.substr(0, fine.find("asks")), "case.toml: size (line 19): ");
+    EXPECT_NE(fine.find("would do"), std::string::npos);
+
+    const auto surface = fine.find("surface = "), far = fine.find(" and far"), end = fine.find(" would");
+    std::string advised = replaced(full_case, "surface = 3e-4", fine.substr(surface, far - surface));
+    advised = replaced(advised, "far = 7e-4", fine.substr(far + 5, end - far - 5));
+    SCOPED_TRACE(fine);
+    EXPECT_EQ(refusal(advised), "");
+    EXPECT_GT(estimate_tets(parse_case(advised, "").domain), 0.5 * most_tets);  // and is not coarser than it must
+
+    EXPECT_NE(refusal(replaced(full_case, "surface = 3e-4", "surface = 1e-300")).find("would do"), std::string::npos);
+}
+
+TEST(CaseErrors, FilesThatAreNotThere) {
+    EXPECT_THROW((void)read_case("no/such/case.toml"), FileError);
+    EXPECT_THROW((void)read_case("/"), FileError);
+}
+
+}  // namespace
+}  // namespace kropla

@@ -1,0 +1,92 @@
+#include "app/progress.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <fcntl.h>
+#include <string>
+#include <unistd.h>
+
+namespace kropla {
+namespace {
+
+const ProgressRow row{.step = 12, .steps = 50, .time = 2.4e-3, .worst_aspect_ratio = 5.8, .rung = "swap",
+                      .touched_fraction = 0.073, .mesh_seconds = 0.08, .heat_seconds = 0.12, .seconds_left = 7.6};
+
+TEST(Progress, SaysWhatAStepDid) {
+    EXPECT_EQ(progress_line(row), "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
+                                  "heat  0.12 s  left 0:08");
+    ProgressRow without = row;
+    without.heat_seconds = {};
+    EXPECT_EQ(progress_line(without), "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
+                                      "left 0:08");
+}
+
+TEST(Progress, ColumnsStandUnderEachOther) {
+    ProgressRow other = row;
+    other.step = 3;
+    other.time = 12e-3;
+    other.worst_aspect_ratio = 10;
+    other.rung = "remesh";
+    other.touched_fraction = 0.2;
+    other.mesh_seconds = 12.5;
+    EXPECT_EQ(progress_line(other).find("left"), progress_line(row).find("left"));
+}
+
+TEST(Progress, SpeaksOfTimeInUnitsThatSuit) {
+    EXPECT_EQ(spoken_time(0), "0.00 s");
+    EXPECT_EQ(spoken_time(2.4e-3), "2.40 ms");
+    EXPECT_EQ(spoken_time(9.9996e-4), "1.00 ms");
+    EXPECT_EQ(spoken_time(1.25e-5), "12.5 us");
+    EXPECT_EQ(spoken_time(3), "3.00 s");
+    EXPECT_EQ(spoken_time(250), "250 s");
+    EXPECT_EQ(spoken_time(5e-10), "0.50 ns");
+    EXPECT_EQ(clock_time(7.6), "0:08");
+    EXPECT_EQ(clock_time(750), "12:30");
+    EXPECT_EQ(clock_time(11100), "3:05:00");
+}
+
+/// Everything that is to be read from a descriptor now.
+std::string drained(int descriptor) {
+    std::string text;
+    std::array<char, 4096> part;
+    for (ssize_t n; (n = read(descriptor, part.data(), part.size())) > 0;) {
+        text.append(part.data(), static_cast<std::size_t>(n));
+    }
+    return text;
+}
+
+TEST(Progress, WritesPlainLinesIntoAFile) {
+    std::FILE* file = std::tmpfile();
+    ASSERT_NE(file, nullptr);
+    {
+        Progress progress(file);
+        progress.show(row);
+        progress.show(row);
+    }
+    std::rewind(file);
+    EXPECT_EQ(drained(fileno(file)), progress_line(row) + "\n" + progress_line(row) + "\n");
+    std::fclose(file);
+}
+
+TEST(Progress, WritesOverItsLineOnATerminal) {
+    const int reader = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);  // a terminal of our own
+    if (reader < 0 || grantpt(reader) != 0 || unlockpt(reader) != 0) GTEST_SKIP() << "no pseudo-terminals here";
+    std::FILE* terminal = std::fopen(ptsname(reader), "w");
+    ASSERT_NE(terminal, nullptr);
+    ProgressRow shorter = row;
+    shorter.heat_seconds = {};
+    {
+        Progress progress(terminal);
+        progress.show(row);
+        progress.show(shorter);
+    }
+    const std::string blanks(progress_line(row).size() - progress_line(shorter).size(), ' ');
+    EXPECT_EQ(drained(reader), "\r" + progress_line(row) + "\r" + progress_line(shorter) + blanks + "\r\n");
+    std::fclose(terminal);
+    close(reader);
+}
+
+}  // namespace
+}  // namespace kropla

@@ -1,0 +1,91 @@
+#include "app/steps_csv.h"
+#include "base/error.h"
+#include "folder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace kropla {
+namespace {
+
+const std::vector<FieldBalance> energy = {{.field = "energy", .unit = "J"}};
+
+StepRow row_of(int step) {
+    StepRow row;
+    row.step = step;
+    row.time = step / 3.0;
+    row.tets = 1000 + step;
+    row.fields = {{"energy", "J", 0.1 + 0.2, 1e-17}};
+    return row;
+}
+
+std::string header_and_rows(std::initializer_list<int> steps) {
+    std::string text = csv_header(energy) + "\n";
+    for (const int step : steps) text += csv_line(row_of(step)) + "\n";
+    return text;
+}
+
+TEST(StepsTable, HasNamesAndUnits) {
+    EXPECT_EQ(csv_header(energy),
+              "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,"
+              "min_dihedral [deg],max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,"
+              "largest_ring,global_remeshes,touched_fraction,mesh_seconds [s],simulate_seconds [s],"
+              "transfer_seconds [s],energy_integral [J],energy_transfer_error");
+}
+
+TEST(StepsTable, RowsFitTheHeader) {
+    const std::string header = csv_header(energy), line = csv_line(row_of(7));
+    EXPECT_EQ(std::ranges::count(line, ','), std::ranges::count(header, ','));
+    const StepRow row = {  // 1, 2, 3, ... in the order of the header
+           .step = 1, .time = 2, .dt = 3, .attempts = 4, .vertices = 5, .tets = 6, .prisms = 7,
+           .max_aspect_ratio = 8, .p999_aspect_ratio = 9, .min_dihedral = 10, .max_dihedral = 11,
+           .smoothing_sweeps = 12, .swaps = 13, .splits = 14, .collapses = 15, .local_remeshes = 16,
+           .largest_ring = 17, .global_remeshes = 18, .touched_fraction = 19, .mesh_seconds = 20,
+           .simulate_seconds = 21, .transfer_seconds = 22, .fields = {{"energy", "J", 23, 24}}};
+    EXPECT_EQ(csv_line(row), "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24");
+}
+
+TEST(StepsTable, KeepsEveryBitOfANumber) {
+    const std::string line = csv_line(row_of(1));
+    EXPECT_NE(line.find(",0.3333333333333333,"), std::string::npos) << line;
+    EXPECT_NE(line.find(",0.30000000000000004,1e-17"), std::string::npos) << line;
+}
+
+TEST(StepsTable, EveryRowIsThereAtOnce) {
+    const Folder folder;
+    StepsTable table(folder.path / "steps.csv", energy);
+    EXPECT_EQ(contents(folder.path / "steps.csv"), header_and_rows({}));
+    table.append(row_of(1));
+    EXPECT_EQ(contents(folder.path / "steps.csv"), header_and_rows({1}));
+}
+
+TEST(StepsTable, GoesOnAfterTheStepOfTheCheckpoint) {
+    const Folder folder;
+    const auto file = folder.path / "steps.csv";
+    write(file, header_and_rows({1, 2, 3}) + "4,1.33");  // the machine failed while it wrote step 4
+    {
+        StepsTable table(file, energy, 2);
+        EXPECT_EQ(contents(file), header_and_rows({1, 2}));
+        table.append(row_of(3));
+    }
+    EXPECT_EQ(contents(file), header_and_rows({1, 2, 3}));
+    StepsTable table(file, energy, 0);
+    EXPECT_EQ(contents(file), header_and_rows({}));
+}
+
+TEST(StepsTable, RefusesToGoOnWhereItCannot) {
+    const Folder folder;
+    const auto file = folder.path / "steps.csv";
+    EXPECT_THROW(StepsTable(file, energy, 2), FileError);  // no such file
+    write(file, header_and_rows({1, 2}));
+    EXPECT_THROW(StepsTable(file, energy, 3), FileError);  // too short
+    EXPECT_THROW(StepsTable(file, {}, 2), FileError);      // other columns
+    EXPECT_EQ(contents(file), header_and_rows({1, 2}));    // and it is as it was
+    write(file, header_and_rows({1}) + csv_line(row_of(2)));
+    EXPECT_THROW(StepsTable(file, energy, 2), FileError);  // row 2 has no end
+    EXPECT_THROW(StepsTable(folder.path / "none" / "steps.csv", energy), FileError);
+}
+
+}  // namespace
+}  // namespace kropla
