@@ -54,6 +54,28 @@ constexpr std::array<std::array<std::size_t, 3>, 4> others = {{{1, 2, 3}, {2, 0,
 
 constexpr std::size_t table_side = 64;  // cavities with more vertices are joined by sorting
 
+/// A stack for inner loops: room is made ahead, and an item is kept or not without a branch.
+template <class T>
+struct Stack {
+    std::vector<T> slots;
+    std::size_t size = 0;
+
+    void make_room(std::size_t more) {
+        if (size + more > slots.size()) slots.resize(2 * (size + more));
+    }
+    void push_if(bool wanted, const T& item) {
+        slots[size] = item;
+        size += wanted;
+    }
+    void push(const T& item) {
+        make_room(1);
+        push_if(true, item);
+    }
+    T& operator[](std::size_t i) { return slots[i]; }
+};
+
+enum class Mark : std::uint8_t { unseen, inside, outside };
+
 /// An edge of the rim as a new tet sees it, and 4 * cell + corner of the facet it spans with the new point.
 struct RimEdge {
     uint32_t low, high, facet;
@@ -63,12 +85,12 @@ struct Kernel {
     std::vector<Site> sites;  // the ghost, then the points
     std::vector<Cell> cells;
     std::vector<uint32_t> free_cells;
-    std::vector<uint32_t> mark;  // per cell: `stamp` if found outside the cavity, stamp + 1 if inside
-    uint32_t stamp = 0;
-    uint32_t last = 0;             // a finite cell, where the next walk starts
-    std::vector<uint32_t> cavity;  // the cells in conflict, breadth first; then the slots of the new cells
-    std::vector<RimFacet> rim;
-    std::vector<uint32_t> rim_vertices;
+    std::vector<Mark> mark;  // per cell, of the cavity: unseen again when it is filled
+    uint32_t last = 0;       // a finite cell, where the next walk starts
+    Stack<uint32_t> cavity;  // the cells in conflict, breadth first, as 4 * cell + corner to the one it was found from
+    Stack<RimFacet> rim;
+    std::vector<uint32_t> slots;  // for the new cells, one per facet of the rim
+    Stack<uint32_t> rim_vertices;
     std::vector<RimEdge> rim_edges;  // for large cavities
     std::array<uint32_t, table_side * table_side> facet_at_edge;  // by local numbers, in the direction of the new tet
 };
@@ -100,91 +122,108 @@ uint32_t locate(const Kernel& k, const Vec3& p) {
     return t;
 }
 
-[[gnu::noinline]] bool holds_perturbed(const Kernel& k, const Cell& c, const Site& p) {
+/// Whether the sphere of a finite cell holds `p`, exact and never undecided.
+[[gnu::noinline]] bool holds_exactly(const Kernel& k, const Cell& c, const Site& p) {
     const auto site = [&](std::size_t i) -> const Site& { return k.sites[c.vertex[i]]; };
     return insphere_perturbed({&site(0).at, &site(1).at, &site(2).at, &site(3).at, &p.at},
                               {site(0).rank, site(1).rank, site(2).rank, site(3).rank, p.rank}) > 0;
 }
 
-/// Whether the sphere of a finite cell holds `p`.
-bool holds(const Kernel& k, const Cell& c, const Site& p) {
+[[gnu::noinline]] bool ghost_in_conflict(const Kernel& k, const Cell& c, const Site& p) {
     const auto at = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[i]].at; };
-    const int s = filter::insphere(at(0), at(1), at(2), at(3), p.at);
-    return s != 0 ? s > 0 : holds_perturbed(k, c, p);
+    const int side = side_of(at(0), at(1), at(2), p.at);
+    return side != 0 ? side > 0 : holds_exactly(k, k.cells[c.across[3] >> 2], p);
 }
 
 bool in_conflict(const Kernel& k, const Cell& c, const Site& p) {
-    if (!is_ghost(c)) return holds(k, c, p);
+    if (is_ghost(c)) return ghost_in_conflict(k, c, p);
     const auto at = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[i]].at; };
-    const int side = side_of(at(0), at(1), at(2), p.at);
-    return side != 0 ? side > 0 : holds(k, k.cells[c.across[3] >> 2], p);
+    const int s = filter::insphere(at(0), at(1), at(2), at(3), p.at);
+    return s != 0 ? s > 0 : holds_exactly(k, c, p);
+}
+
+/// Looks across a facet of a cell in the cavity: the cell there joins the cavity, or the facet the rim. Which of them
+/// is a toss-up, so there is no branch for it.
+inline void look_across(Kernel& k, const Cell& c, std::size_t corner, const Site& p) {
+    const uint32_t across = c.across[corner], t = across >> 2;
+    if (k.mark[t] == Mark::inside) return;
+    bool conflict = false;
+    if (k.mark[t] == Mark::unseen) {
+        const Cell& there = k.cells[t];  // if in conflict, the cells behind are asked for soon
+        for (const std::size_t i : others[across & 3]) __builtin_prefetch(&k.cells[there.across[i] >> 2]);
+        conflict = in_conflict(k, there, p);
+        k.mark[t] = static_cast<Mark>(2 - conflict);
+    }
+    const auto& o = others[corner];
+    k.cavity.push_if(conflict, across);
+    k.rim.push_if(!conflict, {c.vertex[o[0]], c.vertex[o[1]], c.vertex[o[2]], across});
 }
 
 /// Finds the cavity of `p` from one of its cells, and the rim.
 void dig(Kernel& k, uint32_t start, const Site& p) {
-    k.stamp += 2;
-    const uint32_t outside = k.stamp, inside = k.stamp + 1;
-    k.rim.clear();
-    k.cavity.assign(1, start);
-    k.mark[start] = inside;
-    for (std::size_t i = 0; i < k.cavity.size(); ++i) {
-        const Cell& c = k.cells[k.cavity[i]];
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const uint32_t t = c.across[corner] >> 2;
-            if (k.mark[t] == inside) continue;
-            if (k.mark[t] != outside) {
-                const bool conflict = in_conflict(k, k.cells[t], p);
-                k.mark[t] = conflict ? inside : outside;
-                if (conflict) k.cavity.push_back(t);
-                if (conflict) continue;
-            }
-            const auto& o = others[corner];
-            k.rim.push_back({c.vertex[o[0]], c.vertex[o[1]], c.vertex[o[2]], c.across[corner]});
-        }
+    k.cavity.size = k.rim.size = 0;
+    k.cavity.push(4 * start);
+    k.mark[start] = Mark::inside;
+    k.cavity.make_room(1);
+    k.rim.make_room(1);
+    look_across(k, k.cells[start], 0, p);  // from the others, where the search came from need not be looked at
+    for (std::size_t i = 0; i < k.cavity.size; ++i) {
+        k.cavity.make_room(3);
+        k.rim.make_room(3);
+        const Cell& c = k.cells[k.cavity[i] >> 2];
+        for (const std::size_t corner : others[k.cavity[i] & 3]) look_across(k, c, corner, p);
     }
 }
 
 /// Gives the vertices of the rim local numbers 0, 1, ...
 void number_rim(Kernel& k) {
-    k.rim_vertices.clear();
-    for (const RimFacet& f : k.rim)
-        for (const uint32_t v : {f.a, f.b, f.c}) {
-            if (k.sites[v].local != none) continue;
-            k.sites[v].local = static_cast<uint32_t>(k.rim_vertices.size());
-            k.rim_vertices.push_back(v);
-        }
+    k.rim_vertices.size = 0;
+    k.rim_vertices.make_room(3 * k.rim.size);
+    const auto number = [&](uint32_t v) {
+        uint32_t& local = k.sites[v].local;
+        const bool first_seen = local == none;
+        local = first_seen ? static_cast<uint32_t>(k.rim_vertices.size) : local;
+        k.rim_vertices.push_if(first_seen, v);
+    };
+    for (std::size_t i = 0; i < k.rim.size; ++i) {
+        number(k.rim[i].a);
+        number(k.rim[i].b);
+        number(k.rim[i].c);
+    }
 }
 
-/// Makes `cavity` a list of as many free slots as the rim has facets: first those of the removed cells.
+/// Finds as many free slots as the rim has facets: first those of the removed cells.
 void take_slots(Kernel& k) {
-    while (k.cavity.size() > k.rim.size()) {
-        k.free_cells.push_back(k.cavity.back());
-        k.cavity.pop_back();
+    k.slots.clear();
+    for (std::size_t i = 0; i < k.cavity.size; ++i) {
+        const uint32_t t = k.cavity[i] >> 2;
+        k.mark[t] = Mark::unseen;
+        (i < k.rim.size ? k.slots : k.free_cells).push_back(t);
     }
-    while (k.cavity.size() < k.rim.size() && !k.free_cells.empty()) {
-        k.cavity.push_back(k.free_cells.back());
+    while (k.slots.size() < k.rim.size && !k.free_cells.empty()) {
+        k.slots.push_back(k.free_cells.back());
         k.free_cells.pop_back();
     }
-    while (k.cavity.size() < k.rim.size()) {
-        k.cavity.push_back(static_cast<uint32_t>(k.cells.size()));
+    while (k.slots.size() < k.rim.size) {
+        k.slots.push_back(static_cast<uint32_t>(k.cells.size()));
         k.cells.emplace_back();
-        k.mark.push_back(0);
+        k.mark.push_back(Mark::unseen);
     }
 }
 
 /// Joins the new cells to each other: each edge of the rim is seen by two of them, in opposite directions.
 void join_by_table(Kernel& k) {
     const auto local = [&](uint32_t v) { return std::size_t{k.sites[v].local}; };
-    for (std::size_t i = 0; i < k.rim.size(); ++i) {
+    for (std::size_t i = 0; i < k.rim.size; ++i) {
         const std::size_t a = local(k.rim[i].a), b = local(k.rim[i].b), c = local(k.rim[i].c);
-        const uint32_t facet = 4 * k.cavity[i];
+        const uint32_t facet = 4 * k.slots[i];
         k.facet_at_edge[b * table_side + c] = facet + 1;
         k.facet_at_edge[c * table_side + a] = facet + 2;
         k.facet_at_edge[a * table_side + b] = facet + 3;
     }
-    for (std::size_t i = 0; i < k.rim.size(); ++i) {
+    for (std::size_t i = 0; i < k.rim.size; ++i) {
         const std::size_t a = local(k.rim[i].a), b = local(k.rim[i].b), c = local(k.rim[i].c);
-        auto& across = k.cells[k.cavity[i]].across;
+        auto& across = k.cells[k.slots[i]].across;
         across[1] = k.facet_at_edge[c * table_side + b];
         across[2] = k.facet_at_edge[a * table_side + c];
         across[3] = k.facet_at_edge[b * table_side + a];
@@ -196,11 +235,11 @@ void join_by_sorting(Kernel& k) {
     const auto add = [&](uint32_t v, uint32_t w, uint32_t facet) {
         k.rim_edges.push_back({std::min(v, w), std::max(v, w), facet});
     };
-    for (std::size_t i = 0; i < k.rim.size(); ++i) {
+    for (std::size_t i = 0; i < k.rim.size; ++i) {
         const RimFacet& f = k.rim[i];
-        add(f.b, f.c, 4 * k.cavity[i] + 1);
-        add(f.c, f.a, 4 * k.cavity[i] + 2);
-        add(f.a, f.b, 4 * k.cavity[i] + 3);
+        add(f.b, f.c, 4 * k.slots[i] + 1);
+        add(f.c, f.a, 4 * k.slots[i] + 2);
+        add(f.a, f.b, 4 * k.slots[i] + 3);
     }
     std::ranges::sort(k.rim_edges, {}, [](const RimEdge& e) { return std::uint64_t{e.low} << 32 | e.high; });
     for (std::size_t i = 0; i < k.rim_edges.size(); i += 2) {
@@ -214,16 +253,17 @@ void join_by_sorting(Kernel& k) {
 void fill(Kernel& k, uint32_t p) {
     number_rim(k);
     take_slots(k);
-    for (std::size_t i = 0; i < k.rim.size(); ++i) {
+    for (std::size_t i = 0; i < k.rim.size; ++i) {
         const RimFacet& f = k.rim[i];
-        const uint32_t t = k.cavity[i];
+        const uint32_t t = k.slots[i];
         k.cells[t] = {{p, f.a, f.b, f.c}, {f.outside, none, none, none}};
         k.cells[f.outside >> 2].across[f.outside & 3] = 4 * t;
+        k.mark[f.outside >> 2] = Mark::unseen;
         if (f.c != ghost) k.last = t;
     }
-    if (k.rim_vertices.size() <= table_side) join_by_table(k);
+    if (k.rim_vertices.size <= table_side) join_by_table(k);
     else join_by_sorting(k);
-    for (const uint32_t v : k.rim_vertices) k.sites[v].local = none;
+    for (std::size_t i = 0; i < k.rim_vertices.size; ++i) k.sites[k.rim_vertices[i]].local = none;
 }
 
 /// Brings four points that are not coplanar, positively oriented, to the front of the order, the others unchanged
@@ -269,7 +309,7 @@ void start(Kernel& k) {
     for (uint32_t f = 0; f < 20; ++f)
         for (uint32_t g = 0; g < 20; ++g)
             if (f != g && opposite(f >> 2, f & 3) == opposite(g >> 2, g & 3)) k.cells[f >> 2].across[f & 3] = g;
-    k.mark.assign(k.cells.size(), 0);
+    k.mark.assign(k.cells.size(), Mark::unseen);
 }
 
 /// The finite cells, by the points' indices.

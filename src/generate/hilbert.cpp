@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace kropla {
 
@@ -75,6 +77,21 @@ std::vector<Placed> places(std::span<const Vec3> points) {
     return result;
 }
 
+/// Sorts by place, points of one place staying in order: by digits, the least first.
+void sort_by_place(std::vector<Placed>& placed) {
+    constexpr int digit_bits = 10;
+    constexpr std::size_t digits = 1 << digit_bits;
+    const auto digit = [](const Placed& p, int shift) { return p.place >> shift & (digits - 1); };
+    std::vector<Placed> sorted(placed.size());
+    for (int shift = 0; shift < 3 * hilbert_bits; shift += digit_bits) {
+        std::array<std::size_t, digits> first{};
+        for (const Placed& p : placed) ++first[digit(p, shift)];
+        std::exclusive_scan(first.begin(), first.end(), first.begin(), std::size_t{0});
+        for (const Placed& p : placed) sorted[first[digit(p, shift)]++] = p;
+        std::swap(placed, sorted);
+    }
+}
+
 }  // namespace
 
 std::uint64_t hilbert_index(const std::array<std::uint32_t, 3>& cell) {
@@ -95,11 +112,15 @@ SpatialOrder hilbert_order(std::span<const Vec3> points) {
     if (points.empty()) return result;
     std::vector<Placed> placed = places(points);
     const auto at = [&](const Placed& p) -> const Vec3& { return points[static_cast<std::size_t>(p.point.value)]; };
-    std::ranges::sort(placed, [&](const Placed& a, const Placed& b) {
-        if (a.place != b.place) return a.place < b.place;
-        const Vec3 &p = at(a), &q = at(b);
-        return std::tie(p.x, p.y, p.z, a.point) < std::tie(q.x, q.y, q.z, b.point);
-    });
+    sort_by_place(placed);
+    for (auto run = placed.begin(); run != placed.end();) {  // equal points stand in the same place, among others
+        const auto end = std::find_if(run, placed.end(), [&](const Placed& p) { return p.place != run->place; });
+        std::sort(run, end, [&](const Placed& a, const Placed& b) {
+            const Vec3 &p = at(a), &q = at(b);
+            return std::tie(p.x, p.y, p.z, a.point) < std::tie(q.x, q.y, q.z, b.point);
+        });
+        run = end;
+    }
     result.order.reserve(points.size());
     const Vec3* last = nullptr;
     for (const Placed& p : placed) {
