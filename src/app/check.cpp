@@ -1,0 +1,176 @@
+#include "app/check.h"
+
+#include "app/distribution.h"
+#include "app/hanging.h"
+#include "base/error.h"
+#include "base/tetrahedron.h"
+#include "io/vtk.h"
+#include "mesh/quality.h"
+#include "mesh/verify.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <map>
+#include <numbers>
+
+namespace kropla {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::array aspect_edges = {3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0, 20.0, 50.0, infinity};  // [-] R/r
+constexpr std::array dihedral_edges = {0.0,   20.0,  40.0,  60.0,  80.0,
+                                       100.0, 120.0, 140.0, 160.0, 180.0};  // [deg]
+
+/// The cells of one region, or of all.
+struct Sample {
+    std::size_t tets = 0;
+    double volume = 0;             // [m^3]
+    std::vector<double> aspect;    // R/r, per cell
+    std::vector<double> dihedral;  // [deg], six per tet
+};
+using Samples = std::vector<std::pair<std::string, Sample>>;  // by what the rows are called
+
+void add(Sample& sample, const Mesh& mesh, Tet t) {
+    const auto& v = mesh.tets[t];
+    ++sample.tets;
+    sample.volume += volume(mesh, t);
+    const double ratio = aspect_ratio(mesh, t);
+    sample.aspect.push_back(std::isnan(ratio) ? infinity : ratio);  // 0/0: too small for double precision
+    for (const double angle : tet_dihedral_angles(mesh.position[v[0]], mesh.position[v[1]],
+                                                  mesh.position[v[2]], mesh.position[v[3]]))
+        sample.dihedral.push_back(angle * (180 / std::numbers::pi));
+}
+
+/// Per region in order, and last of all cells, where there are several regions. A file with more regions than
+/// are of use to read (its "region" may be something else) is reported as a whole.
+Samples samples_of(const Mesh& mesh) {
+    constexpr std::size_t most = 16;
+    std::map<Region, Sample> by_region;
+    Sample all;
+    for (const Tet t : mesh.tets.indices()) {
+        add(all, mesh, t);
+        if (by_region.size() <= most) add(by_region[mesh.region[t]], mesh, t);
+    }
+    Samples samples;
+    if (by_region.size() <= most)
+        for (auto& [region, sample] : by_region)
+            samples.emplace_back(std::to_string(region.value), std::move(sample));
+    if (samples.size() != 1) samples.emplace_back("all", std::move(all));
+    return samples;
+}
+
+std::string place(const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x, x.y, x.z); }
+
+/// Breaks a text into lines of at most 78 columns, indented by two.
+std::string wrapped(std::string_view text) {
+    constexpr std::size_t width = 76;
+    std::string lines;
+    while (!text.empty()) {
+        const std::size_t space = text.size() > width ? text.rfind(' ', width) : text.size();
+        const std::size_t end = space == std::string_view::npos ? text.size() : space;
+        lines += fmt::format("  {}\n", text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return lines;
+}
+
+/// The first fault of the mesh, or nothing.
+std::string first_fault(const Mesh& mesh) {
+    if (auto fault = verify(mesh); !fault.empty()) return fault;
+    const auto hanging = hanging_vertex(mesh);
+    if (!hanging) return {};
+    return fmt::format(
+        "cell {} at {}: vertex {} at {} lies in its facet opposite corner {} without being one of its "
+        "corners",
+        hanging->facet.tet.value, place(centroid(mesh, hanging->facet.tet)), hanging->vertex.value,
+        place(mesh.position[hanging->vertex]), hanging->facet.corner);
+}
+
+std::size_t count_boundary_facets(const Mesh& mesh) {
+    std::size_t count = 0;
+    for (const auto& neighbours : mesh.neighbour)
+        count +=
+            static_cast<std::size_t>(std::ranges::count_if(neighbours, [](Tet n) { return !n.exists(); }));
+    return count;
+}
+
+std::size_t count_regions(const Mesh& mesh) {
+    std::vector<Region> regions(mesh.region.begin(), mesh.region.end());
+    std::ranges::sort(regions);
+    return static_cast<std::size_t>(std::ranges::unique(regions).begin() - regions.begin());
+}
+
+std::string counts(const Mesh& mesh) {
+    return fmt::format(
+        "\nvertices        {:>10}\ntets            {:>10}\nprisms          {:>10}\n"
+        "boundary facets {:>10}\nregions         {:>10}\n",
+        count_vertices(mesh), count_tets(mesh), 0, count_boundary_facets(mesh), count_regions(mesh));
+}
+
+std::string volumes(const Samples& samples) {
+    std::string text =
+        fmt::format("\n{:>6} {:>10} {:>10} {:>22}\n", "region", "tets", "prisms", "volume [m^3]");
+    for (const auto& [name, sample] : samples)
+        text += fmt::format("{:>6} {:>10} {:>10} {:>22.12e}\n", name, sample.tets, 0, sample.volume);
+    return text;
+}
+
+std::string table(const char* title, const Samples& samples, std::vector<double> Sample::* values) {
+    std::string text = fmt::format("\n{}\n{:>6} {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", title, "region",
+                                   "min", "mean", "median", "99 %", "99.9 %", "max");
+    for (const auto& [name, sample] : samples) {
+        const Distribution d = distribution(sample.*values);
+        text += fmt::format("{:>6} {:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4g}\n", name, d.min,
+                            d.mean, d.median, d.p99, d.p999, d.max);
+    }
+    return text;
+}
+
+/// Aspect ratio and dihedral angles side by side.
+std::string histograms(const Samples& samples) {
+    std::string text;
+    for (const auto& [name, sample] : samples) {
+        if (name == "all" && samples.size() > 1) continue;
+        const auto left = histogram(sample.aspect, aspect_edges);
+        const auto right = histogram(sample.dihedral, dihedral_edges);
+        text += fmt::format("\n{:<41}{}\n", "region " + name + ": cells by R/r", "dihedral angles [deg]");
+        for (std::size_t i = 0; i < left.size(); ++i) text += fmt::format("{:<41}{}\n", left[i], right[i]);
+    }
+    return text;
+}
+
+/// `all` holds all cells in their order.
+std::string worst_cell(const Mesh& mesh, const Sample& all) {
+    const auto largest = std::ranges::max_element(all.aspect);
+    const Tet worst(static_cast<std::size_t>(largest - all.aspect.begin()));
+    return fmt::format("\nworst cell: {} at {}, region {}, R/r {:.4g}\n", worst.value,
+                       place(centroid(mesh, worst)), mesh.region[worst].value, *largest);
+}
+
+}  // namespace
+
+CheckReport check_file(const std::filesystem::path& path) {
+    Cells cells = read_vtu_cells(path);
+    const std::size_t vertices = cells.position.size(), tets = cells.tets.size();
+    Mesh mesh;
+    try {
+        mesh = make_frame(std::move(cells)).mesh;
+    } catch (const FileError& error) {
+        return {.valid = false,
+                .text = fmt::format("{}: invalid\n{}\nvertices {:>10}\ntets     {:>10}\n", path.string(),
+                                    wrapped(error.what()), vertices, tets)};
+    }
+    const std::string fault = first_fault(mesh);
+    const Samples samples = samples_of(mesh);
+    std::string text = fmt::format("{}: {}\n", path.string(), fault.empty() ? "valid" : "invalid") +
+                       wrapped(fault) + counts(mesh) + volumes(samples) +
+                       table("aspect ratio R/r (3 is perfect)", samples, &Sample::aspect) +
+                       table("dihedral angles [deg]", samples, &Sample::dihedral) + histograms(samples) +
+                       worst_cell(mesh, samples.back().second);
+    return {.valid = fault.empty(), .text = std::move(text)};
+}
+
+}  // namespace kropla

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace kropla {
+
+/// What `kropla check` says of a file.
+struct CheckReport {
+    bool valid = false;
+    std::string text;  // at most 80 columns but for the file's name, ends with a newline
+};
+
+/// Reads a VTU file and tells whether it holds a valid mesh, or the first fault with its cell and place;
+/// counts, volumes, and the distribution of aspect ratio and dihedral angles per region; the worst cell.
+/// Throws FileError if there is no mesh to be had from the file at all.
+[[nodiscard]] CheckReport check_file(const std::filesystem::path& path);
+
+}  // namespace kropla

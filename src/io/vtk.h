@@ -1,0 +1,42 @@
+#pragma once
+
+#include "simulate/fields.h"
+
+#include <filesystem>
+#include <span>
+
+namespace kropla {
+
+/// Writes a frame as a VTU file: the mesh without its free slots, the cell arrays region (0 = surroundings,
+/// 1... = bodies in order), aspect_ratio, min_dihedral [deg] and layer (0 for tets), and the fields as point
+/// arrays. The file gets its name when it is complete. Throws FileError with the path and the system's
+/// reason.
+void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {});
+
+/// What a VTU file says, before neighbours are known: cells as they stand, right or wrong.
+struct Cells {
+    Array<Vertex, Vec3> position;            // [m]
+    Array<Tet, std::array<Vertex, 4>> tets;  // vertices exist; orientation and conformity are not looked at
+    Array<Tet, Region> region;               // 0 where the file has no cell array "region"
+    std::vector<NodalField> fields;          // point arrays of one component
+};
+
+/// Throws FileError, in one line, if the file is missing, unreadable, not VTU, truncated or damaged, or has
+/// no cells, cells that are not linear tets, cells of vertices that do not exist, or coordinates that are not
+/// finite.
+[[nodiscard]] Cells read_vtu_cells(const std::filesystem::path& path);
+
+struct Frame {
+    Mesh mesh;
+    std::vector<NodalField> fields;
+};
+
+/// The mesh of these cells. A VTU file does not know patches: boundary facets get that of the face of the
+/// bounding box in which they lie, exactly by coordinates, else patch 0. The tets are not checked: see
+/// `verify`. Throws FileError as make_mesh, naming the cell but not the file.
+[[nodiscard]] Frame make_frame(Cells cells);
+
+/// Both in one; all errors name the file.
+[[nodiscard]] Frame read_vtu(const std::filesystem::path& path);
+
+}  // namespace kropla
