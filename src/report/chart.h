@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kropla {
+
+/// One quantity of a chart: a value per place on the x axis. Not finite: not drawn.
+struct Series {
+    std::string name;
+    std::vector<double> values;
+};
+
+/// A quantity over time, as it will be drawn.
+struct Chart {
+    enum class Marks {
+        lines,
+        columns  ///< from zero; several series are stacked
+    };
+    std::string title;
+    std::string unit;       // of the values; empty: none
+    std::vector<double> x;  // ascending
+    std::string x_title;    // with its unit
+    std::vector<Series> series;
+    Marks marks = Marks::lines;
+    std::optional<double> limit = {};  // drawn as a line of its own, "limit"
+};
+
+/// The chart as an HTML figure: title, legend, inline SVG whose colours are the page's. Rows beyond some
+/// hundreds are drawn together, each place showing the largest of its rows; hovering shows the values.
+[[nodiscard]] std::string draw_chart(const Chart& chart);
+
+}  // namespace kropla

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+
+namespace kropla {
+
+/// Writes DIR/report.html, "the run on one page", from the files that a run leaves: case.toml, steps.csv,
+/// frames.pvd and three of the frames. The page needs nothing but itself. It also shows a run that is not
+/// finished. Throws FileError, naming the file, if one is missing or broken, or the page cannot be written.
+void write_report(const std::filesystem::path& dir);
+
+}  // namespace kropla

@@ -1,0 +1,184 @@
+#include "report/picture.h"
+
+#include "report/svg.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace kropla {
+namespace {
+
+constexpr double width = 300;  // [pixels] of a picture
+constexpr int bands = 32;      // of colour
+constexpr int body_classes = 4;
+
+/// From the plane [m] to the drawing.
+struct Drawing {
+    CutWindow window;
+    double scale;  // [pixels/m]
+    double height;
+};
+
+Drawing drawing_of(const CutWindow& window) {
+    const double scale = width / (window.max.x - window.min.x);
+    return {window, scale, (window.max.y - window.min.y) * scale};
+}
+
+Point2 on_drawing(const Drawing& drawing, Point2 p) {
+    return {(p.x - drawing.window.min.x) * drawing.scale, (drawing.window.max.y - p.y) * drawing.scale};
+}
+
+/// Whether anything of it may lie in the window.
+bool seen(const CutPolygon& polygon, const CutWindow& window) {
+    const auto all = [&](auto outside) {
+        return std::ranges::all_of(corners(polygon), outside, &CutCorner::place);
+    };
+    return !all([&](Point2 p) { return p.x < window.min.x; }) &&
+           !all([&](Point2 p) { return p.x > window.max.x; }) &&
+           !all([&](Point2 p) { return p.y < window.min.y; }) &&
+           !all([&](Point2 p) { return p.y > window.max.y; });
+}
+
+std::string opening(const Drawing& drawing, const char* kind) {
+    return std::string("<svg class=\"") + kind + "\" viewBox=\"0 0 " + pixels(width) + ' ' +
+           pixels(drawing.height) + "\" role=\"img\">";
+}
+
+std::string region_class(Region region) {
+    return region == surroundings ? "r0" : "r" + std::to_string(1 + (region.value - 1) % body_classes);
+}
+
+struct ValuedPoint {
+    Point2 place;
+    double value;
+};
+
+/// The part of a convex polygon whose values are at least `level`, or with `below` at most [Sutherland,
+/// Hodgman 1974].
+std::vector<ValuedPoint> clipped(const std::vector<ValuedPoint>& polygon, double level, bool below) {
+    const double sign = below ? -1 : 1;
+    std::vector<ValuedPoint> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const ValuedPoint &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+        const double at_p = sign * (p.value - level), at_q = sign * (q.value - level);
+        if (at_p >= 0) kept.push_back(p);
+        if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) {
+            const double share = at_p / (at_p - at_q);
+            kept.push_back(
+                {{p.place.x + share * (q.place.x - p.place.x), p.place.y + share * (q.place.y - p.place.y)},
+                 level});
+        }
+    }
+    return kept;
+}
+
+int band_of(double value, double least, double most) {
+    return std::clamp(static_cast<int>(std::floor((value - least) / (most - least) * bands)), 0, bands - 1);
+}
+
+std::string band_colour(int band) { return inferno((band + 0.5) / bands); }
+
+/// Adds the polygon, divided at the levels between bands, to the paths of the bands.
+void add_in_bands(const std::vector<ValuedPoint>& polygon, double least, double most,
+                  std::array<std::string, bands>& paths) {
+    const auto [low, high] = std::ranges::minmax(polygon, {}, &ValuedPoint::value);
+    const int first = band_of(low.value, least, most), last = band_of(high.value, least, most);
+    for (int band = first; band <= last; ++band) {
+        std::vector<ValuedPoint> part = polygon;
+        if (band > first) part = clipped(part, least + (most - least) * band / bands, false);
+        if (band < last) part = clipped(part, least + (most - least) * (band + 1) / bands, true);
+        if (part.size() < 3) continue;
+        std::vector<Point2> places;
+        for (const ValuedPoint& p : part) places.push_back(p.place);
+        paths[static_cast<std::size_t>(band)] += polygon_path(places);
+    }
+}
+
+}  // namespace
+
+CutWindow extent(std::span<const CutPolygon> cut) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    CutWindow window = {{infinity, infinity}, {-infinity, -infinity}};
+    for (const CutPolygon& polygon : cut) {
+        for (const CutCorner& corner : corners(polygon)) {
+            const Point2 p = corner.place;
+            window.min = {std::min(window.min.x, p.x), std::min(window.min.y, p.y)};
+            window.max = {std::max(window.max.x, p.x), std::max(window.max.y, p.y)};
+        }
+    }
+    return window;
+}
+
+CutWindow around(Point2 middle, double half_side) {
+    return {{middle.x - half_side, middle.y - half_side}, {middle.x + half_side, middle.y + half_side}};
+}
+
+CutWindow narrowed(CutWindow window, std::span<const CutPolygon> cut, Point2 middle, std::size_t most) {
+    const auto towards = [](double a, double b) { return b + 0.8 * (a - b); };
+    while (static_cast<std::size_t>(std::ranges::count_if(
+               cut, [&](const CutPolygon& polygon) { return seen(polygon, window); })) > most) {
+        window = {{towards(window.min.x, middle.x), towards(window.min.y, middle.y)},
+                  {towards(window.max.x, middle.x), towards(window.max.y, middle.y)}};
+    }
+    return window;
+}
+
+std::string draw_cells(const Mesh& mesh, std::span<const CutPolygon> cut, const CutWindow& window) {
+    const Drawing drawing = drawing_of(window);
+    std::map<Region, std::string> paths;
+    for (const CutPolygon& polygon : cut) {
+        if (!seen(polygon, window)) continue;
+        std::vector<Point2> places;
+        for (const CutCorner& corner : corners(polygon)) places.push_back(on_drawing(drawing, corner.place));
+        paths[mesh.region[polygon.tet]] += polygon_path(places);
+    }
+    std::string svg = opening(drawing, "picture cells");
+    for (const auto& [region, path] : paths) {
+        svg += "<path class=\"" + region_class(region) + "\" d=\"" + path + "\"/>";
+    }
+    return svg + "</svg>";
+}
+
+std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, double least,
+                       double most, const CutWindow& window) {
+    const Drawing drawing = drawing_of(window);
+    std::array<std::string, bands> paths;
+    for (const CutPolygon& polygon : cut) {
+        if (!seen(polygon, window)) continue;
+        std::vector<ValuedPoint> valued;
+        for (const CutCorner& corner : corners(polygon)) {
+            valued.push_back({on_drawing(drawing, corner.place), value_at(corner, field)});
+        }
+        add_in_bands(valued, least, most, paths);
+    }
+    std::string svg = opening(drawing, "picture field");
+    for (int band = 0; band < bands; ++band) {
+        const std::string& path = paths[static_cast<std::size_t>(band)];
+        if (path.empty()) continue;
+        const std::string colour = band_colour(band);
+        svg += "<path fill=\"" + colour + "\" stroke=\"" + colour + "\" d=\"" + path + "\"/>";
+    }
+    return svg + "</svg>";
+}
+
+std::string draw_colour_bar(const std::string& title, double least, double most) {
+    constexpr double bar_width = 420, left = 20, right = 400;
+    std::string svg = "<svg class=\"bar\" viewBox=\"0 0 " + pixels(bar_width) + " 58\" role=\"img\">";
+    for (int band = 0; band < bands; ++band) {
+        const double step = (right - left) / bands;
+        svg += "<rect fill=\"" + band_colour(band) + "\" x=\"" + pixels(left + step * band) +
+               "\" y=\"20\" width=\"" + pixels(step + 0.5) + "\" height=\"16\"/>";
+    }
+    svg += "<text class=\"tick\" x=\"" + pixels(left) + "\" y=\"14\">" + escaped(title) + "</text>";
+    for (const double value : round_ticks(least, most, 6)) {
+        const double x = left + (right - left) * (value - least) / (most - least);
+        svg += "<text class=\"tick\" text-anchor=\"middle\" x=\"" + pixels(x) + "\" y=\"52\">" +
+               readable(value, 5) + "</text>";
+    }
+    return svg + "</svg>";
+}
+
+}  // namespace kropla

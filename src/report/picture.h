@@ -1,0 +1,35 @@
+#pragma once
+
+#include "report/section.h"
+#include "simulate/fields.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kropla {
+
+/// The part of a cut that is shown [m].
+struct CutWindow {
+    Point2 min, max;
+};
+[[nodiscard]] CutWindow extent(std::span<const CutPolygon> cut);
+[[nodiscard]] CutWindow around(Point2 middle, double half_side);
+
+/// The window, drawn in towards `middle` until no more than `most` polygons are seen: drawings have to stay
+/// small.
+[[nodiscard]] CutWindow narrowed(CutWindow window, std::span<const CutPolygon> cut, Point2 middle,
+                                 std::size_t most);
+
+/// The cells of a cut as inline SVG, every region in its colour (class r0, r1, ... of the page).
+[[nodiscard]] std::string draw_cells(const Mesh& mesh, std::span<const CutPolygon> cut,
+                                     const CutWindow& window);
+
+/// A field on a cut as inline SVG, in bands of one colour each between `least` and `most`: exact level lines.
+[[nodiscard]] std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,
+                                     double least, double most, const CutWindow& window);
+
+/// The colours of draw_field with numbers.
+[[nodiscard]] std::string draw_colour_bar(const std::string& title, double least, double most);
+
+}  // namespace kropla

@@ -1,0 +1,117 @@
+#include "report/svg.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+namespace kropla {
+namespace {
+
+std::string to_text(double value, std::chars_format format, int precision) {
+    std::array<char, 64> text;
+    const auto result = std::to_chars(text.data(), text.data() + text.size(), value, format, precision);
+    return {text.data(), result.ptr};
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        switch (c) {
+            case '&': result += "&amp;"; break;
+            case '<': result += "&lt;"; break;
+            case '>': result += "&gt;"; break;
+            case '"': result += "&quot;"; break;
+            default: result += c;
+        }
+    }
+    return result;
+}
+
+std::string pixels(double value) {
+    const long tenths = std::lround(value * 10);
+    std::string text = (tenths < 0 ? "-" : "") + std::to_string(std::labs(tenths) / 10);
+    if (tenths % 10 != 0) text += '.' + std::to_string(std::labs(tenths) % 10);
+    return text;
+}
+
+std::string readable(double value, int digits) {
+    const double size = std::abs(value);
+    // The short form of to_chars turns to powers of ten when there are more digits than asked for: not for
+    // counts.
+    if (size >= std::pow(10, digits) && size < 1e7) return to_text(value, std::chars_format::fixed, 0);
+    return to_text(value, std::chars_format::general, digits);
+}
+
+std::string readable_count(double value) {
+    std::string text = to_text(value, std::chars_format::fixed, 0);
+    for (std::ptrdiff_t i = std::ssize(text) - 3; i > (value < 0 ? 1 : 0); i -= 3) {
+        text.insert(static_cast<std::size_t>(i), "\u202f");
+    }
+    return text;
+}
+
+std::string readable_time(double seconds) {
+    const double size = std::abs(seconds);
+    if (size >= 120) {
+        const double minutes = std::floor(seconds / 60);
+        return readable_count(minutes) + " min " + readable(std::floor(seconds - 60 * minutes), 2) + " s";
+    }
+    if (size >= 1 || size == 0) return readable(seconds, 3) + " s";
+    if (size >= 1e-3) return readable(seconds * 1e3, 3) + " ms";
+    return readable(seconds * 1e6, 3) + " µs";
+}
+
+std::string polygon_path(std::span<const Point2> corners) {
+    std::string path = "M";
+    for (const Point2& p : corners) {
+        if (path.size() > 1) path += ' ';
+        path += pixels(p.x) + ',' + pixels(p.y);
+    }
+    return path + 'z';
+}
+
+std::string line_path(std::span<const Point2> points) {
+    std::string path;
+    bool drawing = false;
+    for (const Point2& p : points) {
+        const bool finite = std::isfinite(p.x) && std::isfinite(p.y);
+        if (finite) path += (drawing ? 'L' : 'M') + pixels(p.x) + ',' + pixels(p.y);
+        drawing = finite;
+    }
+    return path;
+}
+
+std::vector<double> round_ticks(double least, double most, int count) {
+    const double rough = (most - least) / std::max(1, count - 1);
+    const double ten = std::pow(10.0, std::floor(std::log10(rough)));
+    double step = 10 * ten;
+    for (const double factor : {5.0, 2.0, 1.0}) {
+        if (factor * ten >= rough) step = factor * ten;
+    }
+    std::vector<double> ticks;
+    const double first = std::ceil(least / step - 1e-9), last = std::floor(most / step + 1e-9);
+    for (double k = first; k <= last; ++k) ticks.push_back(k * step + 0.0);  // + 0: no minus zero
+    return ticks;
+}
+
+std::string inferno(double fraction) {
+    constexpr std::array<std::uint32_t, 10> colours = {0x000004, 0x1b0c41, 0x4a0c6b, 0x781c6d, 0xa52c60,
+                                                       0xcf4446, 0xed6925, 0xfb9b06, 0xf7d13d, 0xfcffa4};
+    const double place = std::clamp(fraction, 0.0, 1.0) * (colours.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(place), colours.size() - 2);
+    const double rest = place - static_cast<double>(below);
+    std::string text = "#";
+    for (const int shift : {16, 8, 0}) {
+        const double a = (colours[below] >> shift) & 255, b = (colours[below + 1] >> shift) & 255;
+        const auto level = static_cast<unsigned>(std::lround(a + rest * (b - a)));
+        text += "0123456789abcdef"[level / 16];
+        text += "0123456789abcdef"[level % 16];
+    }
+    return text;
+}
+
+}  // namespace kropla

@@ -1,0 +1,94 @@
+#include "base/error.h"
+#include "io/file.h"
+#include "report/page.h"
+#include "tiny_run.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+namespace kropla {
+namespace {
+
+/// The first tag of a page that does not fit, if any: every element is closed in order.
+std::string unclosed_tag(const std::string& html) {
+    static const std::regex tag("<(/?)([a-z0-9]+)((?:\"[^\"]*\"|[^\">])*?)(/?)>");
+    std::vector<std::string> open;
+    for (std::sregex_iterator it(html.begin(), html.end(), tag), end; it != end; ++it) {
+        const std::string name = (*it)[2];
+        if ((*it)[1] == "/") {
+            if (open.empty() || open.back() != name) return "</" + name + ">";
+            open.pop_back();
+        } else if ((*it)[4] != "/") {
+            open.push_back(name);
+        }
+    }
+    return open.empty() ? "" : open.back();
+}
+
+std::string page_of(const TinyRun& run) {
+    const auto dir = test_folder("page");
+    write_tiny_run(dir, run);
+    write_report(dir);
+    std::string html = read_file(dir / "report.html");
+    std::filesystem::remove_all(dir);
+    return html;
+}
+
+void expect_sound(const std::string& html) {
+    EXPECT_EQ(unclosed_tag(html), "");
+    EXPECT_EQ(html.find("http"), std::string::npos);  // nothing from elsewhere
+    EXPECT_EQ(html.find("<script"), std::string::npos);
+    EXPECT_LT(html.size(), 5'000'000U);
+    EXPECT_NE(html.find("a &lt; b &amp; c"), std::string::npos);  // the case, escaped
+}
+
+TEST(Page, ShowsAFinishedRun) {
+    const std::string html = page_of({});
+    expect_sound(html);
+    EXPECT_NE(html.find("Finished at 500 ms"), std::string::npos);
+    EXPECT_NE(html.find("Drift of the integral of energy"), std::string::npos);
+    EXPECT_NE(html.find("Field: temperature [K]"), std::string::npos);
+    const std::regex cells("class=\"picture cells\"");
+    EXPECT_EQ(std::distance(std::sregex_iterator(html.begin(), html.end(), cells), {}), 6);
+}
+
+TEST(Page, ShowsARunWithoutHeat) {
+    const std::string html = page_of({.heat = false});
+    expect_sound(html);
+    EXPECT_EQ(html.find("Field:"), std::string::npos);
+}
+
+TEST(Page, ShowsAnInterruptedRun) {
+    for (const int rows : {0, 1, 3}) {
+        const std::string html = page_of({.rows = rows});
+        expect_sound(html);
+        EXPECT_NE(html.find("verdict unfinished"), std::string::npos) << rows;
+    }
+}
+
+TEST(Page, NamesTheFileThatIsMissingOrBroken) {
+    const auto dir = test_folder("broken");
+    for (const char* file :
+         {"case.toml", "steps.csv", "frames.pvd", "frames/00000.vtu", "frames/00005.vtu"}) {
+        for (const bool there : {false, true}) {
+            write_tiny_run(dir);
+            if (there) write_file(dir / file, "");
+            else std::filesystem::remove(dir / file);
+            if (there && std::string(file) == "case.toml") continue;  // a case that says nothing is no fault
+            try {
+                write_report(dir);
+                ADD_FAILURE() << file << " was not missed";
+            } catch (const FileError& error) {
+                EXPECT_NE(std::string(error.what()).find((dir / file).string()), std::string::npos)
+                    << error.what();
+            }
+            EXPECT_FALSE(std::filesystem::exists(dir / "report.html"));
+        }
+    }
+    std::filesystem::remove_all(dir);
+    EXPECT_THROW(write_report(dir), FileError);
+}
+
+}  // namespace
+}  // namespace kropla

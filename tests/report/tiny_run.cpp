@@ -1,0 +1,72 @@
+#include "tiny_run.h"
+
+#include "io/file.h"
+#include "io/pvd.h"
+#include "io/vtk.h"
+
+#include <unistd.h>
+
+namespace kropla {
+namespace {
+
+std::string steps_of(const TinyRun& run) {
+    std::string text =
+        "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,min_dihedral "
+        "[deg],"
+        "max_dihedral "
+        "[deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,largest_ring,global_remeshes,"
+        "touched_fraction,mesh_seconds [s],simulate_seconds [s],transfer_seconds [s]";
+    if (run.heat) text += ",energy_integral [J],energy_transfer_error";
+    text += '\n';
+    for (int step = 1; step <= run.rows; ++step) {
+        text += std::to_string(step) + "," + std::to_string(step * 0.1) + ",0.1," + (step == 2 ? "3" : "1") +
+                ",637,2592,0," + (step == 3 ? std::to_string(run.worst) : "6.5") +
+                ",6.25,12,140,2,30,4,3,1,2,0,0.125,0.25,0.5,0.01";
+        if (run.heat) text += "," + std::to_string(100 + step) + ",1e-15";
+        text += '\n';
+    }
+    return text;
+}
+
+Mesh mesh_at(int height) {
+    return grid_of_cubes({6, 6, 12}, [height](int i, int j, int k) {
+        const bool inside = i >= 2 && i < 4 && j >= 2 && j < 4 && k >= height && k < height + 2;
+        return Region(inside ? 1 : 0);
+    });
+}
+
+NodalField temperature_of(const Mesh& mesh, int height) {
+    NodalField field{"temperature", "K", Array<Vertex, double>(mesh.position.size())};
+    const Vec3 centre = {3, 3, height + 1.0};
+    for (const Vertex v : mesh.position.indices()) {
+        field.values[v] = 300 + 1500 / (1 + squared_norm(mesh.position[v] - centre));
+    }
+    return field;
+}
+
+}  // namespace
+
+void write_tiny_run(const std::filesystem::path& dir, const TinyRun& run) {
+    std::filesystem::remove_all(dir);
+    std::filesystem::create_directories(dir / "frames");
+    write_file(dir / "case.toml",
+               "[quality]\nmax_aspect_ratio = 10\n\n[time]\nend = 0.5\nsteps = 5  # a < b & c\n");
+    write_file(dir / "steps.csv", run.steps.empty() ? steps_of(run) : run.steps);
+    std::vector<SeriesEntry> entries;
+    for (int step = 0; step <= run.rows; ++step) {
+        const int height = 9 - step;
+        const Mesh mesh = mesh_at(height);
+        std::vector<NodalField> fields;
+        if (run.heat) fields.push_back(temperature_of(mesh, height));
+        const std::string name = "frames/0000" + std::to_string(step) + ".vtu";
+        write_vtu(dir / name, mesh, fields);
+        entries.push_back({step * 0.1, name});
+    }
+    write_pvd(dir / "frames.pvd", entries);
+}
+
+std::filesystem::path test_folder(const std::string& name) {
+    return std::filesystem::temp_directory_path() / ("kropla-" + std::to_string(getpid()) + "-" + name);
+}
+
+}  // namespace kropla
