@@ -1,6 +1,7 @@
 // Linear tetrahedra, at a time and over a step.
-//   [Lesoinne, Farhat 1996] Geometric conservation laws for flow problems with moving boundaries and deformable
-//     meshes. CMAME 134. In three dimensions one configuration per step is not enough; two Gauss points are.
+//   [Lesoinne, Farhat 1996] Geometric conservation laws for flow problems with moving boundaries and
+//     deformable meshes. CMAME 134. In three dimensions one configuration per step is not enough; two Gauss
+//     points are.
 #include "simulate/elements.h"
 
 #include <cmath>

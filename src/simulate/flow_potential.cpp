@@ -1,6 +1,6 @@
 // The potential flow around moving bodies, by linear elements.
-//   [Batchelor 1967] An introduction to fluid dynamics, 2.7 and 6.4: the irrotational flow that a moving boundary sets
-//     up has the least kinetic energy of all that satisfy continuity.
+//   [Batchelor 1967] An introduction to fluid dynamics, 2.7 and 6.4: the irrotational flow that a moving
+//     boundary sets up has the least kinetic energy of all that satisfy continuity.
 #include "simulate/flow_potential.h"
 
 #include "mesh/cells.h"
@@ -53,7 +53,7 @@ Array<Vertex, double> swept_by_boundary(const Step& step, const std::vector<Tet>
     return swept;
 }
 
-/// Takes the sum out of `swept`, from each vertex after its share of the volume: only then is there a solution.
+/// Takes the sum out of `swept`, from each vertex after its share of the volume: else there is no solution.
 void balance(const Mesh& mesh, const std::vector<Tet>& cells, Array<Vertex, double>& swept) {
     double total_volume = 0;
     for (Tet t : cells) total_volume += linear_tet(corners(mesh, t)).volume;
@@ -64,8 +64,8 @@ void balance(const Mesh& mesh, const std::vector<Tet>& cells, Array<Vertex, doub
     }
 }
 
-LinearSystem potential_system(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering, int rank,
-                              const Array<Vertex, double>& swept) {
+LinearSystem potential_system(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering,
+                              int rank, const Array<Vertex, double>& swept) {
     const std::vector<Tet> mine = cells_of_rank(mesh, cells, numbering, rank);
     LinearSystem system = empty_system(mesh, mine, numbering, rank);
     for (Tet t : mine) {
@@ -103,7 +103,7 @@ DisplacedFlow solve_displaced_flow(const Ranks& ranks, const Mesh& before, const
     const Step step{before, current, dt};
     // The residual is gas lost or gained; 1e-14 of what the bodies sweep keeps a constant state to rounding.
     const SolverChoice choice{.name = "potential flow", .prefix = "potential_", .method = "cg",
-                              .preconditioner = "gamg", .relative_tolerance = 1e-14, .singular = true};
+                              .preconditioner = "sor", .relative_tolerance = 1e-14, .singular = true};
     for (Region region : resting) {
         const std::vector<Tet> cells = living_tets(current, region);
         Array<Vertex, double> swept = swept_by_boundary(step, cells);

@@ -44,10 +44,11 @@ void check_region(const HeatRegion& region, std::size_t number) {
 void check_heat(const HeatOptions& options, const Mesh& mesh) {
     for (std::size_t i = 0; i < options.regions.size(); ++i) check_region(options.regions[i], i);
     std::size_t needed = 0;
-    for (Tet t : living_tets(mesh)) needed = std::max(needed, static_cast<std::size_t>(mesh.region[t].value) + 1);
+    for (Tet t : living_tets(mesh))
+        needed = std::max(needed, static_cast<std::size_t>(mesh.region[t].value) + 1);
     if (options.regions.size() < needed) {
-        throw CaseError("heat: the mesh has " + std::to_string(needed) + " regions, materials are given for " +
-                        std::to_string(options.regions.size()));
+        throw CaseError("heat: the mesh has " + std::to_string(needed) +
+                        " regions, materials are given for " + std::to_string(options.regions.size()));
     }
     for (std::size_t f = 0; f < options.faces.size(); ++f) {
         const HeatFace& face = options.faces[f];
@@ -66,12 +67,14 @@ NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
         for (Vertex v : mesh.tets[t]) region[v] = std::max(region[v], mesh.region[t]);
     }
     for (Vertex v : mesh.position.indices()) {
-        if (region[v].exists()) field.values[v] = options.regions[static_cast<std::size_t>(region[v].value)].initial;
+        if (region[v].exists())
+            field.values[v] = options.regions[static_cast<std::size_t>(region[v].value)].initial;
     }
     return field;
 }
 
-double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature, Region only) {
+double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,
+              Region only) {
     double sum = 0;
     for (Tet t : living_tets(mesh, only)) {
         const HeatMaterial& m = options.regions[static_cast<std::size_t>(mesh.region[t].value)].material;

@@ -13,24 +13,34 @@ namespace kropla {
 // The heat equation on a moving mesh, material by region:
 //     rho c (dT/dt + u . grad T) = div(k grad T) + s.
 //
-// With linear shape functions phi_i that move with the mesh (velocity w), with div u = 0, and with u.n = w.n where a
-// region ends, it reads, region by region, in conservative form
-//     d/dt integral(rho c T phi_i) = integral(rho c T (u - w) . grad phi_i) - integral(k grad T . grad phi_i) + load_i.
-// Backward Euler, masses lumped (M = rho c V/4 per corner of each tet):
-//     M1 T1 - M0 T0 = dt (C - K) T1 + dt load,   C_ij = mean over the step of integral(rho c phi_j (u - w).grad phi_i).
-// First order in time, second in space. K, the load and values at the boundary are taken at the end of the step.
+// With linear shape functions phi_i that move with the mesh (velocity w), with div u = 0, and with u.n = w.n
+// where a region ends, it reads, region by region, in conservative form
+//     d/dt (M T)_i = integral(rho c T (u - w).grad phi_i) - integral(k grad T.grad phi_i) + load_i,
+// M_ij = integral(rho c phi_i phi_j). A step by backward Euler:
+//     M1 T1 - M0 T0 + L (T1 - T0 - moved.grad T1) = dt (C - K) T1 + dt load,
+//     C_ij = mean over the step of integral(rho c phi_j (u - w).grad phi_i).
+// First order in time, second in space. K, the load and values at the boundary are taken at the step's end.
 //
-// It keeps energy: the phi_i sum to one, so that every column of C and K sums to zero, and the masses gain what the
-// load brings. It keeps a constant state: for T = 1 the mesh's part of C and the change of mass leave
-//     (M1 - M0)_i + dt integral(rho c w.grad phi_i) = dt rho c F_i,   F_i = integral(phi_i w.n) over the boundary,
-// an identity at every instant that holds for the step as well, since its means over time are exact (elements.h). In
-// a body w = u and nothing is left. Around bodies F_i is not zero, and gas at rest would go through their surface;
-// instead it flows as they push it, u = grad Phi with integral(grad Phi.grad phi_i) = F_i (flow_potential.h). So the
-// flow's part of C makes up for F_i, exactly.
+// L, the lumped less the consistent mass (at the end), damps the wiggles that a consistent mass makes beside
+// a jump; where the mesh rests, the two masses together are the lumped one, rho c V/4 per corner of a tet. It
+// acts on what the material gains alone: `moved` is how far a vertex was moved past the material, and the
+// bracket is zero for a linear temperature that rests. (Lumping M itself would lose most of the convection
+// where single vertices move.)
 //
-// Where cells are too coarse for the convection, SUPG: the residual without diffusion (linear elements have none),
-// rho c (dT/dt + v.grad T) - s, is weighted with tau v.grad phi_i, v the mean of u - w over the tet. It is zero for a
-// constant state and its weights sum to zero: both properties hold.
+// It keeps energy: the phi_i sum to one, so that every column of C, K and L sums to zero, and the masses gain
+// what the load brings. It keeps a constant state: for T = 1 the mesh's part of C and the change of mass
+// leave
+//     sum_j (M1 - M0)_ij + dt integral(rho c w.grad phi_i) = dt rho c F_i,
+//     F_i = the integral of phi_i w.n over the region's boundary,
+// an identity at every instant that holds for the step as well, since its means over time are exact
+// (elements.h). A body moves as a whole; for one who goes with it u = 0, and w = 0 but for vertices that were
+// moved inside the body; F_i = 0. Around bodies F_i is not zero, and gas at rest would go through their
+// surface; instead it flows as they push it, u = grad Phi with integral(grad Phi.grad phi_i) = F_i
+// (flow_potential.h). So the flow's part of C makes up for F_i, exactly.
+//
+// Where cells are too coarse for the convection, SUPG: the residual without diffusion (linear elements have
+// none), rho c (dT/dt + v.grad T) - s, is weighted with tau v.grad phi_i, v the mean of u - w over the tet.
+// It is zero for a constant state and its weights sum to zero: both properties hold.
 
 /// A quantity at a place [m] and a time [s].
 using Quantity = std::function<double(const Vec3& place, double t)>;
@@ -43,7 +53,7 @@ struct HeatMaterial {
 
 /// How the material of a region moves.
 enum class Carried {
-    with_mesh,  ///< as the mesh does: a body, which moves as a whole and keeps the volume of each of its cells
+    with_mesh,  ///< as its interface does: a body, which moves as a whole
     at_rest,    ///< it rests, but for making way for the bodies that move in it
 };
 
@@ -64,8 +74,8 @@ struct HeatOptions {
     std::array<HeatFace, 6> faces = {};  // x min, x max, y min, y max, z min, z max
 };
 
-/// Throws CaseError, naming the key below `heat`, if a material is not positive, an initial value not finite, a face
-/// without its quantity, or a region of the mesh without its material.
+/// Throws CaseError, naming the key below `heat`, if a material is not positive, an initial value not finite,
+/// a face without its quantity, or a region of the mesh without its material.
 void check_heat(const HeatOptions& options, const Mesh& mesh);
 
 /// "temperature" [K], the initial value of each region; a body's at its surface.
@@ -77,16 +87,16 @@ struct HeatReport {
     int potential_iterations = 0;  // for the flow that makes way for the bodies
 };
 
-/// Takes the temperature from t [s] on `before` to t + dt on `current`: the same connectivity. At a vertex of several
-/// faces with values, the first of them holds. All ranks call it together with the same arguments, and all get the
-/// whole field. The solver's options are -ksp_type, -ksp_rtol, -pc_type and so on.
-/// Throws CaseError as check_heat, or if dt is not positive or a quantity not finite; SolverError if the solver does
+/// Takes the temperature from t [s] on `before` to t + dt on `current`: the same connectivity. At a vertex of
+/// several faces with values, the first of them holds. All ranks call it together with the same arguments,
+/// and all get the whole field. The solver's options are -ksp_type, -ksp_rtol, -pc_type and so on. Throws
+/// CaseError as check_heat, or if dt is not positive or a quantity not finite; SolverError if the solver does
 /// not converge. Then `temperature` is untouched.
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt);
 
 /// The integral of rho c T [J], of all regions or of one.
-[[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,
-                            Region only = {});
+[[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options,
+                            const Array<Vertex, double>& temperature, Region only = {});
 
 }  // namespace kropla

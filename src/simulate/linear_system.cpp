@@ -36,8 +36,9 @@ OwnedMat make_matrix(const Ranks& ranks, const LinearSystem& system, int all_row
     OwnedMat owned(matrix);
     check(MatSetSizes(matrix, system.rows(), system.rows(), all_rows, all_rows));
     check(MatSetType(matrix, MATAIJ));
-    check(MatSeqAIJSetPreallocationCSR(matrix, system.begin.data(), system.column.data(), system.value.data()));
-    check(MatMPIAIJSetPreallocationCSR(matrix, system.begin.data(), system.column.data(), system.value.data()));
+    const PetscInt *begin = system.begin.data(), *column = system.column.data();
+    check(MatSeqAIJSetPreallocationCSR(matrix, begin, column, system.value.data()));
+    check(MatMPIAIJSetPreallocationCSR(matrix, begin, column, system.value.data()));
     return owned;
 }
 
@@ -62,7 +63,8 @@ OwnedKsp make_solver(const Ranks& ranks, Mat matrix, const SolverChoice& choice)
     PC preconditioner = nullptr;
     check(KSPGetPC(solver, &preconditioner));
     check(PCSetType(preconditioner, choice.preconditioner.c_str()));
-    check(KSPSetTolerances(solver, choice.relative_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, choice.most_iterations));
+    check(KSPSetTolerances(solver, choice.relative_tolerance, PETSC_DEFAULT, PETSC_DEFAULT,
+                           choice.most_iterations));
     check(KSPSetInitialGuessNonzero(solver, PETSC_TRUE));
     if (choice.singular) check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
     check(KSPSetFromOptions(solver));
@@ -95,8 +97,8 @@ void throw_unless_converged(KSP solver, const SolverChoice& choice) {
     check(KSPGetIterationNumber(solver, &iterations));
     check(KSPGetResidualNorm(solver, &residual));
     std::ostringstream message;
-    message << "the " << choice.name << " solver did not converge: " << KSPConvergedReasons[reason] << " after "
-            << iterations << " iterations, residual " << residual;
+    message << "the " << choice.name << " solver did not converge: " << KSPConvergedReasons[reason]
+            << " after " << iterations << " iterations, residual " << residual;
     throw SolverError(message.str());
 }
 
@@ -115,7 +117,8 @@ double relative_residual(Mat matrix, Vec right, Vec unknown) {
 
 }  // namespace
 
-LinearSystem empty_system(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering, int rank) {
+LinearSystem empty_system(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering,
+                          int rank) {
     const auto k = static_cast<std::size_t>(rank);
     LinearSystem system;
     system.first_row = numbering.first_row[k];

@@ -22,15 +22,15 @@ struct LinearSystem {
 };
 
 /// A system of zeros with a place for every pair of vertices that share one of `cells`, the rank's own.
-[[nodiscard]] LinearSystem empty_system(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering,
-                                        int rank);
+[[nodiscard]] LinearSystem empty_system(const Mesh& mesh, const std::vector<Tet>& cells,
+                                        const Numbering& numbering, int rank);
 
 /// Adds to the place (row, column), both global numbers; rows of other ranks are passed over.
 void add_to(LinearSystem& system, int row, int column, double value);
 void add_to_right(LinearSystem& system, int row, double value);
 
-/// Makes the row say: unknown = value (if the rank owns it), scaled by its diagonal, which is not zero. The first
-/// guess is the value too.
+/// Makes the row say: unknown = value (if the rank owns it), scaled by its diagonal, which is not zero. The
+/// first guess is the value too.
 void fix_unknown(LinearSystem& system, int row, double value);
 
 /// How a system is solved unless PETSc's options say otherwise.
@@ -49,8 +49,8 @@ struct Solution {
     int iterations;
     double residual;            // [-] |b - A x| / |b|
 };
-/// Solves together with all other ranks. Throws SolverError with PETSc's reason, the iterations and the residual if
-/// it does not converge.
+/// Solves together with all other ranks. Throws SolverError with PETSc's reason, the iterations and the
+/// residual if it does not converge.
 [[nodiscard]] Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice);
 
 }  // namespace kropla

@@ -85,11 +85,13 @@ std::vector<Tet> living_tets(const Mesh& mesh, Region only) {
     return cells;
 }
 
-std::vector<Tet> cells_of_rank(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering, int rank) {
+std::vector<Tet> cells_of_rank(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering,
+                               int rank) {
     std::vector<Tet> mine;
     for (Tet t : cells) {
         const auto& v = mesh.tets[t];
-        if (std::ranges::any_of(v, [&](Vertex a) { return numbering.owns(rank, numbering.row[a]); })) mine.push_back(t);
+        if (std::ranges::any_of(v, [&](Vertex a) { return numbering.owns(rank, numbering.row[a]); }))
+            mine.push_back(t);
     }
     return mine;
 }

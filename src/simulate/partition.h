@@ -6,8 +6,8 @@
 
 namespace kropla {
 
-/// Unknowns: a row per vertex, numbered along a space-filling curve, and the curve cut into equal pieces, one per
-/// rank. The rows of rank r are first_row[r] ... first_row[r + 1] - 1. Depends on the mesh alone.
+/// Unknowns: a row per vertex, numbered along a space-filling curve, and the curve cut into equal pieces, one
+/// per rank. The rows of rank r are first_row[r] ... first_row[r + 1] - 1. Depends on the mesh alone.
 struct Numbering {
     Array<Vertex, int> row;         // -1: the vertex has no unknown
     std::vector<Vertex> vertex;     // of each row
@@ -26,8 +26,8 @@ struct Numbering {
 /// All tets of the mesh that are no free slots, in order; or those of one region.
 [[nodiscard]] std::vector<Tet> living_tets(const Mesh& mesh, Region only = {});
 
-/// Those of `cells` that have an unknown of the rank: what it assembles. Cells astride a cut are on both lists, so
-/// that every rank fills its rows alone and in the same order, whatever the number of ranks.
+/// Those of `cells` that have an unknown of the rank: what it assembles. Cells astride a cut are on both
+/// lists, so that every rank fills its rows alone and in the same order, whatever the number of ranks.
 [[nodiscard]] std::vector<Tet> cells_of_rank(const Mesh& mesh, const std::vector<Tet>& cells,
                                              const Numbering& numbering, int rank);
 

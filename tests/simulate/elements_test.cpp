@@ -23,7 +23,8 @@ TEST(Elements, GradientsReproduceLinearFunctions) {
         const LinearTet tet = linear_tet(x);
         const Vec3 slope = random_point(random);
         Vec3 gradient;
-        for (std::size_t i = 0; i < 4; ++i) gradient += dot(slope, x[i]) / tet.volume * tet.volume_gradient[i];
+        for (std::size_t i = 0; i < 4; ++i)
+            gradient += dot(slope, x[i]) / tet.volume * tet.volume_gradient[i];
         EXPECT_LT(distance(gradient, slope), 1e-12 / std::abs(tet.volume)) << "seed 7, trial " << trial;
     }
 }
@@ -35,7 +36,8 @@ TEST(Elements, VolumeSweptIsVolumeGained) {
         const auto mean = mean_volume_gradient(x0, x1);
         double swept = 0;
         for (std::size_t i = 0; i < 4; ++i) swept += dot(x1[i] - x0[i], mean[i]);
-        EXPECT_NEAR(swept, linear_tet(x1).volume - linear_tet(x0).volume, 1e-14) << "seed 11, trial " << trial;
+        EXPECT_NEAR(swept, linear_tet(x1).volume - linear_tet(x0).volume, 1e-14)
+            << "seed 11, trial " << trial;
     }
 }
 
@@ -43,7 +45,8 @@ TEST(Elements, MeanAreaIsThatOfTheFacetOfTheTet) {
     Random random{13};
     const Corners x0 = random_corners(random), x1 = random_corners(random);
     const Vec3 area = mean_area_vector({x0[1], x0[2], x0[3]}, {x1[1], x1[2], x1[3]});
-    EXPECT_LT(distance(area, -3.0 * mean_volume_gradient(x0, x1)[0]), 1e-14);  // facet 0 looks away from corner 0
+    const Vec3 inwards = 3.0 * mean_volume_gradient(x0, x1)[0];  // to corner 0, away from facet 0
+    EXPECT_LT(distance(area, -inwards), 1e-14);
 }
 
 }  // namespace

@@ -27,19 +27,22 @@ double slab_error(int n, int steps) {
     const double end = 0.1;
     const auto place = [n](int i, int j, int k) { return Vec3{1.0 * i / n, 0.1 * j, 0.1 * k}; };
     const Mesh mesh = cube_grid(n, 1, 1, place, [](int, int, int) { return 0; });
-    const auto exact = [](const Vec3& x, double t) { return 1 - x.x + std::sin(pi * x.x) * std::exp(-pi * pi * t); };
+    const auto exact = [](const Vec3& x, double t) {
+        return 1 - x.x + std::sin(pi * x.x) * std::exp(-pi * pi * t);
+    };
     HeatOptions options{.regions = {HeatRegion{}}};
     options.faces[0] = face_value(1);
     options.faces[1] = face_value(0);
     NodalField field = initial_temperature(mesh, options);
     for (Vertex v : mesh.position.indices()) field.values[v] = exact(mesh.position[v], 0);
     run(mesh, options, field, end / steps, steps);
-    return l2_error(mesh, field, [&](const Vec3& x) { return exact(x, end); }) / 0.1;  // rms: the slab is 0.1 x 0.1
+    const double error = l2_error(mesh, field, [&](const Vec3& x) { return exact(x, end); });
+    return error / 0.1;  // rms: the slab is 0.1 x 0.1
 }
 
 TEST(HeatAnalytic, SlabBetweenTwoTemperatures) {
-    // Backward Euler decays too slowly, by pi^4 t dt / 2 = 1.2 % of sin(pi x)/e at 40 steps, rms 0.0032; the mesh of
-    // 16 cells adds a fifth of that.
+    // Backward Euler decays too slowly, by pi^4 t dt / 2 = 1.2 % of sin(pi x)/e at 40 steps, rms 0.0032; the
+    // mesh of 16 cells adds a fifth of that.
     const double coarse = slab_error(16, 40), fine = slab_error(32, 160);
     EXPECT_LT(coarse, 0.0045);
     EXPECT_GT(std::log2(coarse / fine), 1.9);  // dt as h^2: second order in space
@@ -100,8 +103,8 @@ TEST(HeatAnalytic, SphereCoolsInAMedium) {
                           .carried = Carried::with_mesh, .initial = 1};
     NodalField field = initial_temperature(mesh, options);
     run(mesh, options, field, 0.01, 20);
-    // Of the coarse mesh: facets inscribed in the sphere, and an initial jump spread over the first cell outside,
-    // which holds 1 % of the heat. Of backward Euler: 1 % of what was lost.
+    // Of the coarse mesh: facets inscribed in the sphere, and an initial jump spread over the first cell
+    // outside, which holds 1 % of the heat. Of backward Euler: 1 % of what was lost.
     const double mean = energy(mesh, options, field.values, Region(1)) / (10 * 4 * pi / 3);
     double centre = 0, surface = 0, vertices = 0;
     for (Vertex v : mesh.position.indices()) {

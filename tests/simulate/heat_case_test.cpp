@@ -11,7 +11,8 @@ namespace kropla {
 namespace {
 
 HeatOptions one_region() {
-    return {.regions = {HeatRegion{.material = {.conductivity = 2, .density = 3, .specific_heat = 5}, .initial = 10}}};
+    return {.regions = {HeatRegion{.material = {.conductivity = 2, .density = 3, .specific_heat = 5},
+                                   .initial = 10}}};
 }
 
 Quantity always(double value) {
@@ -70,7 +71,7 @@ TEST(HeatCase, BodyWinsAtItsSurface) {
     HeatOptions options = one_region();
     options.regions.push_back({.initial = 20});
     const NodalField field = initial_temperature(mesh, options);
-    const auto of_body = vertices_of_body(mesh);
+    const auto of_body = vertices_of(mesh, Region(1));
     for (Vertex v : mesh.position.indices()) EXPECT_EQ(field.values[v], of_body[v] ? 20 : 10);
     EXPECT_EQ(field.name, "temperature");
     EXPECT_EQ(field.unit, "K");
@@ -119,7 +120,8 @@ TEST(HeatCase, SolverSaysWhyItGaveUp) {
         said = error.what();
     }
     check(PetscOptionsClearValue(nullptr, "-ksp_max_it"));
-    EXPECT_EQ(said.find("the heat solver did not converge: DIVERGED_ITS after 1 iterations, residual "), 0u) << said;
+    EXPECT_EQ(said.find("the heat solver did not converge: DIVERGED_ITS after 1 iterations, residual "), 0u)
+        << said;
     EXPECT_EQ(field.values, untouched.values);
 }
 
@@ -128,7 +130,8 @@ TEST(HeatCase, FreeSlotsOfTheMeshAreOfNoMatter) {
     Array<Tet, std::array<Vertex, 4>> kept;
     Array<Tet, Region> regions;
     for (Tet t : mesh.tets.indices()) {
-        if (mesh.region[t] == Region(1)) continue;  // the body is a hole now, the vertex in its middle a free slot
+        if (mesh.region[t] == Region(1))
+            continue;  // the body is a hole now, the vertex in its middle a free slot
         kept.push_back(mesh.tets[t]);
         regions.push_back(surroundings);
     }

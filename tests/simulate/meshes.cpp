@@ -23,7 +23,8 @@ struct Grid {
     }
 };
 
-/// The tets of a cube: from the corner nearest to the grid's middle along the axes, in each of the six orders.
+/// The tets of a cube: from the corner nearest to the grid's middle along the axes, in each of the six
+/// orders.
 void add_cube(const Grid& grid, const std::array<int, 3>& cube, const Array<Vertex, Vec3>& position,
               Array<Tet, std::array<Vertex, 4>>& tets) {
     for (const auto& order : orders) {
@@ -101,7 +102,8 @@ Mesh unit_cube(int n) {
 Mesh unit_cube_with_body(int n) {
     const auto place = [n](int i, int j, int k) { return Vec3{1.0 * i / n, 1.0 * j / n, 1.0 * k / n}; };
     const auto inside = [n](int i) { return i >= n / 4 && i < n - n / 4; };
-    return cube_grid(n, n, n, place, [&](int i, int j, int k) { return inside(i) && inside(j) && inside(k) ? 1 : 0; });
+    return cube_grid(n, n, n, place,
+                     [&](int i, int j, int k) { return inside(i) && inside(j) && inside(k) ? 1 : 0; });
 }
 
 Mesh ball_of_shells(const std::vector<double>& radii, const std::function<int(int shell)>& region) {
@@ -117,13 +119,13 @@ Mesh ball_of_shells(const std::vector<double>& radii, const std::function<int(in
     });
 }
 
-Array<Vertex, char> vertices_of_body(const Mesh& mesh) {
-    Array<Vertex, char> of_body(mesh.position.size(), 0);
+Array<Vertex, char> vertices_of(const Mesh& mesh, Region region) {
+    Array<Vertex, char> of_region(mesh.position.size(), 0);
     for (Tet t : mesh.tets.indices()) {
-        if (mesh.region[t] != Region(1)) continue;
-        for (Vertex v : mesh.tets[t]) of_body[v] = 1;
+        if (mesh.region[t] != region) continue;
+        for (Vertex v : mesh.tets[t]) of_region[v] = 1;
     }
-    return of_body;
+    return of_region;
 }
 
 double l2_error(const Mesh& mesh, const NodalField& field, const std::function<double(const Vec3&)>& exact) {

@@ -28,7 +28,8 @@ TEST(Partition, PiecesAreCompact) {
     std::size_t listed = 0;
     for (int rank = 0; rank < 2; ++rank) listed += cells_of_rank(mesh, cells, numbering, rank).size();
     EXPECT_GE(listed, cells.size());
-    EXPECT_LT(listed, cells.size() + 3 * 6 * 64);  // astride the cut: no more than three layers of 8 x 8 cubes
+    EXPECT_LT(listed,
+              cells.size() + 3 * 6 * 64);  // astride the cut: no more than three layers of 8 x 8 cubes
 }
 
 TEST(Partition, OfOneRegionLeavesOutTheOthers) {

@@ -10,7 +10,6 @@ namespace {
 std::unique_ptr<PetscSession> session;
 
 class Petsc : public testing::Environment {
-    void SetUp() override { session = std::make_unique<PetscSession>(); }
     void TearDown() override { session.reset(); }
 };
 
@@ -19,6 +18,7 @@ class Petsc : public testing::Environment {
 }  // namespace
 
 const PetscSession& petsc() {
+    if (!session) session = std::make_unique<PetscSession>();
     return *session;
 }
 

@@ -4,7 +4,7 @@
 
 namespace kropla {
 
-/// PETSc, as long as the test program runs.
+/// PETSc, from the first call to the end of the test program.
 const PetscSession& petsc();
 
 }  // namespace kropla
