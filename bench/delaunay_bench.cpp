@@ -1,5 +1,6 @@
-// The Delaunay kernel on random points, uniform in a cube and graded towards its centre as around a small body; beside
-// CGAL's where that is installed. Items are tets. Each measures from the points to the finished triangulation.
+// The Delaunay kernel on random points, uniform in a cube and graded towards its centre as around a small
+// body; beside CGAL's where that is installed. Items are tets. Each measures from the points to the finished
+// triangulation.
 
 #include "generate/generate.h"
 
@@ -22,12 +23,15 @@ std::vector<Vec3> uniform_points(std::int64_t n) {
     return points;
 }
 
-/// Distances from the centre are the cubes of those of uniform points: the spacing there is a thousandth and less.
+/// Distances from the centre are the cubes of those of uniform points: the spacing there is a thousandth and
+/// less.
 std::vector<Vec3> graded_points(std::int64_t n) {
     std::vector<Vec3> points = uniform_points(n);
     for (Vec3& p : points) p *= squared_norm(p);
     return points;
 }
+
+void sizes(benchmark::internal::Benchmark* b) { b->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond); }
 
 void measure_kropla(benchmark::State& state, std::vector<Vec3> (*make)(std::int64_t)) {
     const std::vector<Vec3> points = make(state.range(0));
@@ -38,8 +42,8 @@ void measure_kropla(benchmark::State& state, std::vector<Vec3> (*make)(std::int6
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(tets));
 }
-BENCHMARK_CAPTURE(measure_kropla, uniform, uniform_points)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(measure_kropla, graded, graded_points)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(measure_kropla, uniform, uniform_points)->Apply(sizes);
+BENCHMARK_CAPTURE(measure_kropla, graded, graded_points)->Apply(sizes);
 
 #ifdef KROPLA_BENCH_CGAL
 void measure_cgal(benchmark::State& state, std::vector<Vec3> (*make)(std::int64_t)) {
@@ -53,8 +57,8 @@ void measure_cgal(benchmark::State& state, std::vector<Vec3> (*make)(std::int64_
     }
     state.SetItemsProcessed(static_cast<std::int64_t>(tets));
 }
-BENCHMARK_CAPTURE(measure_cgal, uniform, uniform_points)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(measure_cgal, graded, graded_points)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(measure_cgal, uniform, uniform_points)->Apply(sizes);
+BENCHMARK_CAPTURE(measure_cgal, graded, graded_points)->Apply(sizes);
 #endif
 
 }  // namespace

@@ -2,10 +2,11 @@
 
 #include <cmath>
 
-// Exact arithmetic on floating-point expansions, after [Shewchuk 1997] and [Dekker 1971]: a number is the unevaluated
-// sum of doubles, nonzero, nonoverlapping and rising in size, so that the last has the sign of all. Exact as long as
-// nothing under- or overflows and the compiler neither fuses nor reorders (-ffp-contract=off). The capacity, the
-// largest number of terms that an operation can leave, is part of the type, so that nothing is allocated.
+// Exact arithmetic on floating-point expansions, after [Shewchuk 1997] and [Dekker 1971]: a number is the
+// unevaluated sum of doubles, nonzero, nonoverlapping and rising in size, so that the last has the sign of
+// all. Exact as long as nothing under- or overflows and the compiler neither fuses nor reorders
+// (-ffp-contract=off). The capacity, the largest number of terms that an operation can leave, is part of the
+// type, so that nothing is allocated.
 
 namespace kropla {
 
@@ -49,8 +50,8 @@ inline TwoTerms split(double a) {
     return {high, a - high};
 }
 
-/// a * b exactly, b already split. Splitting rather than std::fma, which is a call where the target has no such
-/// instruction.
+/// a * b exactly, b already split. Splitting rather than std::fma, which is a call where the target has no
+/// such instruction.
 inline TwoTerms two_product(double a, double b, TwoTerms b_split) {
     const double p = a * b;
     const TwoTerms s = split(a);

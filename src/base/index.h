@@ -9,8 +9,8 @@
 
 namespace kropla {
 
-/// A number that names one thing of one kind: `Index<struct VertexTag>` and `Index<struct TetTag>` do not mix.
-/// The default names nothing; 32 bits, so that a mesh holds at most 2^31 - 1 things of a kind.
+/// A number that names one thing of one kind: `Index<struct VertexTag>` and `Index<struct TetTag>` do not
+/// mix. The default names nothing; 32 bits, so that a mesh holds at most 2^31 - 1 things of a kind.
 template <class Tag>
 struct Index {
     std::int32_t value = -1;

@@ -1,8 +1,9 @@
 // Exact signs of determinants, after
 //   [Shewchuk 1997] Adaptive precision floating-point arithmetic and fast robust geometric predicates;
 //   [Devillers, Teillaud 2011] Perturbations for Delaunay and weighted Delaunay 3D triangulations.
-// Against Shewchuk: three stages instead of his four (a bound from lengths, a bound from the permanent, all exact),
-// because points in general position are decided by the first two and regular grids need the last at once.
+// Against Shewchuk: three stages instead of his four (a bound from lengths, a bound from the permanent, all
+// exact), because points in general position are decided by the first two and regular grids need the last at
+// once.
 
 #include "base/predicates.h"
 
@@ -29,8 +30,8 @@ ExactVector exact_vector(const Vec3& a, const Vec3& b) {
 Expansion<16> minor(const ExactVector& a, const ExactVector& b) { return a.x * b.y - b.x * a.y; }
 
 /// The determinant of three rows from the minors of the first two columns.
-Expansion<192> combine(const Expansion<16>& bc, const Difference& az, const Expansion<16>& ac, const Difference& bz,
-                       const Expansion<16>& ab, const Difference& cz) {
+Expansion<192> combine(const Expansion<16>& bc, const Difference& az, const Expansion<16>& ac,
+                       const Difference& bz, const Expansion<16>& ab, const Difference& cz) {
     return (bc * az - ac * bz) + ab * cz;
 }
 
@@ -58,7 +59,8 @@ int orient3d_exactly(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 
 /// One term of the 4x4 determinant, lift * det(p, q, r), and what it adds to the permanent.
 double insphere_term(double lift, const Vec3& p, const Vec3& q, const Vec3& r, double& permanent) {
-    const double qr1 = q.x * r.y, qr2 = q.y * r.x, pr1 = p.x * r.y, pr2 = p.y * r.x, pq1 = p.x * q.y, pq2 = p.y * q.x;
+    const double qr1 = q.x * r.y, qr2 = q.y * r.x, pr1 = p.x * r.y;
+    const double pr2 = p.y * r.x, pq1 = p.x * q.y, pq2 = p.y * q.x;
     permanent += lift * ((std::abs(qr1) + std::abs(qr2)) * std::abs(p.z) + (std::abs(pr1) + std::abs(pr2)) *
                          std::abs(q.z) + (std::abs(pq1) + std::abs(pq2)) * std::abs(r.z));
     return lift * (p.z * (qr1 - qr2) - q.z * (pr1 - pr2) + r.z * (pq1 - pq2));
@@ -103,13 +105,14 @@ int insphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const V
 
 // Lifted to the paraboloid, e is inside if it lies below the hyperplane h through the lifted a, b, c, d:
 //     insphere = sign(h(e) - lift(e)),   h(e) = sum of lambda_i(e) lift(p_i),
-// where lambda_i are the barycentric coordinates of e in the tet. Only the lifts are raised, each by an amount that
-// outweighs all amounts of lower ranks. So on a tie the point of highest rank decides by its factor: -1 for e, and
-// for a corner lambda_i, whose sign is the orientation of the tet with that corner replaced by e. Where that is zero
-// the next rank decides; the factor of e is never zero, so the search ends. All five points enter one determinant,
-// hence neighbouring tets agree, and as the triangulation is the lower hull of lifted points whose places are the true
-// ones, it has no flat tets. A point coplanar with three corners takes the fourth out of play (its factor is zero),
-// so that circles on the facets of the hull are decided alike from either side.
+// where lambda_i are the barycentric coordinates of e in the tet. Only the lifts are raised, each by an
+// amount that outweighs all amounts of lower ranks. So on a tie the point of highest rank decides by its
+// factor: -1 for e, and for a corner lambda_i, whose sign is the orientation of the tet with that corner
+// replaced by e. Where that is zero the next rank decides; the factor of e is never zero, so the search ends.
+// All five points enter one determinant, hence neighbouring tets agree, and as the triangulation is the lower
+// hull of lifted points whose places are the true ones, it has no flat tets. A point coplanar with three
+// corners takes the fourth out of play (its factor is zero), so that circles on the facets of the hull are
+// decided alike from either side.
 int insphere_perturbed(const std::array<const Vec3*, 5>& points, const std::array<std::int64_t, 5>& ranks) {
     if (const int s = insphere(*points[0], *points[1], *points[2], *points[3], *points[4])) return s;
     std::array<std::size_t, 5> by_rank = {0, 1, 2, 3, 4};

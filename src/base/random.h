@@ -12,8 +12,8 @@ constexpr std::uint64_t mixed_bits(std::uint64_t z) {
 }
 
 /// The n-th random number of the stream `seed`: the same on every machine and in any order of asking.
-/// SplitMix64 as a counter-based generator, after [Steele, Lea, Flood 2014]; the seed is mixed first, so that the
-/// streams of neighbouring seeds are not the same one shifted.
+/// SplitMix64 as a counter-based generator, after [Steele, Lea, Flood 2014]; the seed is mixed first, so that
+/// the streams of neighbouring seeds are not the same one shifted.
 constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t n) {
     return mixed_bits(mixed_bits(seed + 0x632BE59BD9B4E019ULL) + n * 0x9E3779B97F4A7C15ULL);
 }

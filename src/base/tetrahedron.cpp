@@ -1,5 +1,5 @@
-// Shape of one tetrahedron. The formulas for the circumradius and the inradius by the edge vectors of one corner are
-// classical (e.g. [Shewchuk 2002] What is a good linear finite element?, section 6).
+// Shape of one tetrahedron. The formulas for the circumradius and the inradius by the edge vectors of one
+// corner are classical (e.g. [Shewchuk 2002] What is a good linear finite element?, section 6).
 
 #include "base/tetrahedron.h"
 
@@ -17,9 +17,10 @@ double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 
 // With u, v, w the edge vectors from one corner and V6 = u . (v x w) six times the volume:
 //     R = |m| / (2 V6),  m = |u|^2 (v x w) + |v|^2 (w x u) + |w|^2 (u x v)
-//     r = V6 / (n1 + n2 + n3 + n4),  n_i twice the areas of the facets; the fourth normal is the sum of the others
-//     R/r = |m| (n1 + n2 + n3 + n4) / (2 V6^2)
-// |m| goes under the roots of the areas, which are independent of each other and go through the pipeline together.
+//     r = V6 / (n1 + n2 + n3 + n4),  n_i twice the areas of the facets; the fourth normal is the sum of the
+//     others R/r = |m| (n1 + n2 + n3 + n4) / (2 V6^2)
+// |m| goes under the roots of the areas, which are independent of each other and go through the pipeline
+// together.
 double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const Vec3 u = b - a, v = c - a, w = d - a;
     const Vec3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
@@ -28,13 +29,15 @@ double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
     const bool positive = v6 > 0 && filter::certain(v6, uu, vv, ww);
     if (!positive && orient3d(a, b, c, d) <= 0) return std::numeric_limits<double>::infinity();
     const double mm = squared_norm(uu * vw + vv * wu + ww * uv);
-    const double first = std::sqrt(mm * squared_norm(vw)), second = std::sqrt(mm * squared_norm(wu));
-    const double third = std::sqrt(mm * squared_norm(uv)), fourth = std::sqrt(mm * squared_norm(vw + wu + uv));
+    const double first = std::sqrt(mm * squared_norm(vw));
+    const double second = std::sqrt(mm * squared_norm(wu));
+    const double third = std::sqrt(mm * squared_norm(uv));
+    const double fourth = std::sqrt(mm * squared_norm(vw + wu + uv));
     return ((first + second) + (third + fourth)) / (2 * v6 * v6);
 }
 
-// As above with corner b as the origin, so that of u, v, w only u = a - b moves with a; F = |m| N / (2 V6^2), hence
-// grad F / F = grad |m| / |m| + grad N / N - 2 grad V6 / V6.
+// As above with corner b as the origin, so that of u, v, w only u = a - b moves with a; F = |m| N / (2 V6^2),
+// hence grad F / F = grad |m| / |m| + grad N / N - 2 grad V6 / V6.
 AspectGradient tet_aspect_gradient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const Vec3 u = a - b, v = d - b, w = c - b;  // det(u, v, w) > 0
     const Vec3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v), outer = vw + wu + uv;
@@ -49,10 +52,11 @@ AspectGradient tet_aspect_gradient(const Vec3& a, const Vec3& b, const Vec3& c, 
     return {aspect_ratio, aspect_ratio * (grad_m / mm + grad_n / n - (2 / v6) * vw)};
 }
 
-// At the edge shared by the facets with outward normals p and q the angle is pi less the one between them, and
-// |p x q| = V6 |edge|; the arc tangent is accurate for all angles.
+// At the edge shared by the facets with outward normals p and q the angle is pi less the one between them,
+// and |p x q| = V6 |edge|; the arc tangent is accurate for all angles.
 std::array<double, 6> tet_dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const Vec3 at_a = cross(c - b, d - b), at_b = cross(d - a, c - a);  // outward normals, by the opposite corner
+    // Outward normals of the facets, named by the opposite corners.
+    const Vec3 at_a = cross(c - b, d - b), at_b = cross(d - a, c - a);
     const Vec3 at_c = cross(b - a, d - a), at_d = cross(c - a, b - a);
     const double v6 = determinant(b - a, c - a, d - a);
     const auto angle = [v6](const Vec3& p, const Vec3& q, const Vec3& edge) {

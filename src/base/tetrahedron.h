@@ -9,8 +9,8 @@ namespace kropla {
 /// The volume of the tet (a, b, c, d) [m^3], negative if it is turned inside out (by rounded arithmetic).
 [[nodiscard]] double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// The aspect ratio R/r of the tet: circumradius by inradius; 3 is perfect. Infinite unless the tet is positively
-/// oriented by the exact predicate.
+/// The aspect ratio R/r of the tet: circumradius by inradius; 3 is perfect. Infinite unless the tet is
+/// positively oriented by the exact predicate.
 [[nodiscard]] double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// R/r and its gradient with respect to the first vertex [1/m].
@@ -22,7 +22,8 @@ struct AspectGradient {
 [[nodiscard]] AspectGradient tet_aspect_gradient(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// The six dihedral angles [rad], at the edges 01, 02, 03, 12, 13, 23.
-[[nodiscard]] std::array<double, 6> tet_dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+[[nodiscard]] std::array<double, 6> tet_dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c,
+                                                         const Vec3& d);
 
 /// The centre of the sphere through the four points, which are not coplanar.
 [[nodiscard]] Vec3 tet_circumcentre(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);

@@ -1,5 +1,6 @@
 // Spatial orders of points, after
-//   [Hamilton 2006] Compact Hilbert indices (the curve by entry corner and direction, here as a table of states);
+//   [Hamilton 2006] Compact Hilbert indices (the curve by entry corner and direction, here as a table of
+//   states);
 //   [Amenta, Choi, Rote 2003] Incremental constructions con BRIO.
 
 #include "generate/hilbert.h"
@@ -16,15 +17,17 @@ namespace kropla {
 
 namespace {
 
-/// Where the curve is inside a cube: a state says at which corner it enters (3 bits) and along which axis it leaves.
-/// For each octant of the cube: its place on the curve, and the state inside it.
+/// Where the curve is inside a cube: a state says at which corner it enters (3 bits) and along which axis it
+/// leaves. For each octant of the cube: its place on the curve, and the state inside it.
 struct Step {
     std::uint8_t place;
     std::uint8_t state;
 };
 using States = std::array<std::array<Step, 8>, 24>;
 
-constexpr unsigned rotated_left(unsigned bits, unsigned by) { return ((bits << by) | (bits >> (3 - by))) & 7; }
+constexpr unsigned rotated_left(unsigned bits, unsigned by) {
+    return ((bits << by) | (bits >> (3 - by))) & 7;
+}
 constexpr unsigned gray(unsigned i) { return i ^ (i >> 1); }
 
 /// The corner at which the curve enters the octant it visits as the i-th, in the standard position.
@@ -98,7 +101,8 @@ std::uint64_t hilbert_index(const std::array<std::uint32_t, 3>& cell) {
     std::uint64_t index = 0;
     unsigned state = 0;
     for (int bit = hilbert_bits - 1; bit >= 0; --bit) {
-        const unsigned octant = ((cell[0] >> bit) & 1) | ((cell[1] >> bit) & 1) << 1 | ((cell[2] >> bit) & 1) << 2;
+        const unsigned x = cell[0] >> bit & 1, y = cell[1] >> bit & 1, z = cell[2] >> bit & 1;
+        const unsigned octant = x | y << 1 | z << 2;
         const Step step = states[state][octant];
         index = index << 3 | step.place;
         state = step.state;
@@ -111,25 +115,22 @@ SpatialOrder hilbert_order(std::span<const Vec3> points) {
     result.same_as.resize(points.size());
     if (points.empty()) return result;
     std::vector<Placed> placed = places(points);
-    const auto at = [&](const Placed& p) -> const Vec3& { return points[static_cast<std::size_t>(p.point.value)]; };
+    const auto at = [&](const Placed& p) { return points[static_cast<std::size_t>(p.point.value)]; };
     sort_by_place(placed);
-    for (auto run = placed.begin(); run != placed.end();) {  // equal points stand in the same place, among others
-        const auto end = std::find_if(run, placed.end(), [&](const Placed& p) { return p.place != run->place; });
+    for (auto run = placed.begin(); run != placed.end();) {  // equal points have one place, maybe with others
+        const auto elsewhere = [place = run->place](const Placed& p) { return p.place != place; };
+        const auto end = std::find_if(run, placed.end(), elsewhere);
         std::sort(run, end, [&](const Placed& a, const Placed& b) {
-            const Vec3 &p = at(a), &q = at(b);
+            const Vec3 p = at(a), q = at(b);
             return std::tie(p.x, p.y, p.z, a.point) < std::tie(q.x, q.y, q.z, b.point);
         });
         run = end;
     }
     result.order.reserve(points.size());
-    const Vec3* last = nullptr;
-    for (const Placed& p : placed) {
-        if (last && at(p) == *last) {
-            result.same_as[p.point] = result.order.back();
-        } else {
-            result.order.push_back(p.point);
-            last = &at(p);
-        }
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        const bool seen = i > 0 && at(placed[i]) == at(placed[i - 1]);
+        if (seen) result.same_as[placed[i].point] = result.order.back();
+        else result.order.push_back(placed[i].point);
     }
     return result;
 }
@@ -140,8 +141,9 @@ std::vector<Vertex> in_random_rounds(std::span<const Vertex> order) {
     for (std::size_t n = order.size(); n > 8 * first_round; n /= 8) ++rounds;
     // The last round is number 0, and each point is put off to an earlier one with a chance of one in eight.
     const auto round_of = [&](Vertex v) {
-        const auto seed = std::uint64_t{0};  // any: it changes the speed a little, never the triangulation
-        return std::min(std::countr_zero(random_bits(seed, static_cast<std::uint64_t>(v.value))) / 3, rounds - 1);
+        const std::uint64_t seed = 0;  // any: it changes the speed a little, never the triangulation
+        const std::uint64_t bits = random_bits(seed, static_cast<std::uint64_t>(v.value));
+        return std::min(std::countr_zero(bits) / 3, rounds - 1);
     };
     std::vector<std::size_t> place(static_cast<std::size_t>(rounds) + 1, 0);
     for (const Vertex v : order) ++place[static_cast<std::size_t>(rounds - round_of(v))];

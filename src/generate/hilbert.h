@@ -17,16 +17,16 @@ inline constexpr int hilbert_bits = 20;
 /// Coordinates are below 2^hilbert_bits.
 [[nodiscard]] std::uint64_t hilbert_index(const std::array<std::uint32_t, 3>& cell);
 
-/// Points along a Hilbert curve through a cube that holds them all. Equal points stand together; each comes once, by
-/// its least index, and `same_as` names that one for the others.
+/// Points along a Hilbert curve through a cube that holds them all. Equal points stand together; each comes
+/// once, by its least index, and `same_as` names that one for the others.
 struct SpatialOrder {
     std::vector<Vertex> order;
     Array<Vertex, Vertex> same_as;  // none for points in `order`
 };
 [[nodiscard]] SpatialOrder hilbert_order(std::span<const Vec3> points);
 
-/// Divides an order into rounds, each about eight times as large as the one before and drawn at random, in which
-/// points keep their order: a biased randomised insertion order (BRIO).
+/// Divides an order into rounds, each about eight times as large as the one before and drawn at random, in
+/// which points keep their order: a biased randomised insertion order (BRIO).
 [[nodiscard]] std::vector<Vertex> in_random_rounds(std::span<const Vertex> order);
 
 }  // namespace kropla

@@ -1,5 +1,5 @@
-// The predicates against integer arithmetic of any length: coordinates are scaled by a power of two until all are
-// integers, which changes no sign and loses nothing.
+// The predicates against integer arithmetic of any length: coordinates are scaled by a power of two until all
+// are integers, which changes no sign and loses nothing.
 
 #include "base/predicates.h"
 
@@ -32,7 +32,8 @@ ExactPoint difference(const Vec3& a, const Vec3& b) {
 }
 
 mpz_class exact_determinant(const ExactPoint& u, const ExactPoint& v, const ExactPoint& w) {
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+           u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
 /// Six times the volume of the tet of the first four points, scaled.
@@ -75,8 +76,8 @@ Vec3 nudged(const Vec3& p, int ulps, Random& random) {
 
 Vec3 in_cube(Random& random) { return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; }
 
-Vec3 on_grid(int n, double spacing, Random& random) {
-    const auto coordinate = [&] { return spacing * static_cast<double>(random.below(static_cast<std::uint64_t>(n))); };
+Vec3 on_grid(std::uint64_t n, double spacing, Random& random) {
+    const auto coordinate = [&] { return spacing * static_cast<double>(random.below(n)); };
     return {coordinate(), coordinate(), coordinate()};
 }
 
@@ -100,7 +101,8 @@ Points nearly_coplanar(Random& random) {
 
 Points nearly_collinear(Random& random) {
     Points p = each([&] { return in_cube(random); });
-    for (std::size_t i = 2; i < 5; ++i) p[i] = nudged(p[0] + random.uniform(-1, 1) * (p[1] - p[0]), 3, random);
+    for (std::size_t i = 2; i < 5; ++i)
+        p[i] = nudged(p[0] + random.uniform(-1, 1) * (p[1] - p[0]), 3, random);
     return p;
 }
 
@@ -158,7 +160,8 @@ TEST(Predicates, AreExactOnGrids) {
     Random random{seed};
     EXPECT_GT(compare(15000, [&] { return each([&] { return on_grid(4, 1.0, random); }); }), 5000);
     EXPECT_GT(compare(10000, [&] { return each([&] { return on_grid(4, 0.1, random); }); }), 1000);
-    compare(10000, [&] { return each([&] { return nudged(Vec3{1, 1, 1} + on_grid(3, 0.1, random), 1, random); }); });
+    const Vec3 origin{1, 1, 1};
+    compare(10000, [&] { return each([&] { return nudged(origin + on_grid(3, 0.1, random), 1, random); }); });
 }
 
 TEST(Predicates, AreExactOnMixedMagnitudes) {
@@ -186,7 +189,8 @@ TEST(Predicates, FiltersNeverClaimAWrongSign) {
     Random random{seed};
     int decided = 0;
     for (int i = 0; i < 20000; ++i) {
-        Points p = i % 2 == 0 ? nearly_coplanar(random) : each([&] { return nudged(on_sphere(random), 50, random); });
+        Points p = i % 2 == 0 ? nearly_coplanar(random)
+                              : each([&] { return nudged(on_sphere(random), 50, random); });
         orient(p);
         const int side = filter::orient3d(p[0], p[1], p[2], p[3]);
         const int inside = filter::insphere(p[0], p[1], p[2], p[3], p[4]);
@@ -254,7 +258,7 @@ TEST(PerturbedInsphere, AgreesFromBothSidesOfAFacet) {
     int facets = 0;
     for (int i = 0; i < 20000; ++i) {
         const auto [p, r] = random_tie(random);
-        const Points other = {p[0], p[2], p[1], p[4], p[3]};  // the tet across facet 0 1 2, and the apex it faces
+        const Points other = {p[0], p[2], p[1], p[4], p[3]};  // the tet across facet 0 1 2, and its apex
         if (orient3d(p) <= 0 || orient3d(other) <= 0) continue;
         ++facets;
         ASSERT_EQ(insphere_perturbed(p, r), insphere_perturbed(other, {r[0], r[2], r[1], r[4], r[3]}))

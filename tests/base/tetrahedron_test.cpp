@@ -42,8 +42,8 @@ TEST(TetShape, RegularTetIsPerfect) {
 TEST(TetShape, CornerOfACube) {
     const double circumradius = std::sqrt(3.0) / 2, inradius = 1 / (3 + std::sqrt(3.0));
     EXPECT_NEAR(aspect_ratio(corner_of_cube), circumradius / inradius, 1e-14);
-    EXPECT_LT(distance(tet_circumcentre(corner_of_cube[0], corner_of_cube[1], corner_of_cube[2], corner_of_cube[3]),
-                       Vec3{0.5, 0.5, 0.5}), 1e-15);
+    const auto& t = corner_of_cube;
+    EXPECT_LT(distance(tet_circumcentre(t[0], t[1], t[2], t[3]), Vec3{0.5, 0.5, 0.5}), 1e-15);
 }
 
 TEST(TetShape, FlatOrTurnedIsInfinite) {
@@ -51,13 +51,15 @@ TEST(TetShape, FlatOrTurnedIsInfinite) {
     EXPECT_EQ(aspect_ratio({regular[1], regular[0], regular[2], regular[3]}), infinity);
     EXPECT_EQ(aspect_ratio({Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{1, 1, 0}}), infinity);
     EXPECT_EQ(aspect_ratio({Vec3{}, Vec3{}, Vec3{}, Vec3{}}), infinity);
-    // Rounded arithmetic sees a volume here, of either sign, though the four points are exactly coplanar or almost.
+    // Rounded arithmetic sees a volume here, of either sign, though the four points are exactly coplanar or
+    // almost.
     Random random{seed};
     for (int i = 0; i < 10000; ++i) {
         Corners t = random_tet(random);
         t[3] = t[0] + random.uniform() * (t[1] - t[0]) + random.uniform() * (t[2] - t[0]);
         const bool positive = orient3d(t[0], t[1], t[2], t[3]) > 0;
-        ASSERT_TRUE(positive ? aspect_ratio(t) > 1e6 : aspect_ratio(t) == infinity) << i << " of seed " << seed;
+        const double value = aspect_ratio(t);
+        ASSERT_TRUE(positive ? value > 1e6 : value == infinity) << i << " of seed " << seed;
     }
 }
 
@@ -72,7 +74,8 @@ TEST(TetShape, RadiiByTheirDefinition) {
             const auto at = [&](int k) { return t[static_cast<std::size_t>(k)]; };
             return norm(cross(at(b) - at(a), at(c) - at(a))) / 2;
         };
-        const double inradius = 3 * volume(t) / (area(1, 2, 3) + area(0, 2, 3) + area(0, 1, 3) + area(0, 1, 2));
+        const double areas = area(1, 2, 3) + area(0, 2, 3) + area(0, 1, 3) + area(0, 1, 2);
+        const double inradius = 3 * volume(t) / areas;
         EXPECT_NEAR(aspect_ratio(t) * inradius / radius, 1, 1e-8) << i << " of seed " << seed;
     }
 }

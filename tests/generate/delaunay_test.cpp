@@ -59,7 +59,8 @@ Points box_with_faces(int inside, int per_face) {
 using FacetVertices = std::array<Vertex, 3>;
 FacetVertices outward_facet(const Triangulation& t, Tet tet, std::size_t corner) {
     FacetVertices facet;
-    for (std::size_t i = 0; i < 3; ++i) facet[i] = t.tets[tet][static_cast<std::size_t>(tet_facets[corner][i])];
+    for (std::size_t i = 0; i < 3; ++i)
+        facet[i] = t.tets[tet][static_cast<std::size_t>(tet_facets[corner][i])];
     return facet;
 }
 
@@ -67,8 +68,8 @@ std::size_t mirror(const Triangulation& t, Tet from, Tet to) {
     return static_cast<std::size_t>(std::ranges::find(t.neighbour[to], from) - t.neighbour[to].begin());
 }
 
-/// Tets positive; neighbours mutual and sharing their facet; and no vertex inside the sphere of the tet across a
-/// facet, ties by index, which makes it the one Delaunay triangulation.
+/// Tets positive; neighbours mutual and sharing their facet; and no vertex inside the sphere of the tet
+/// across a facet, ties by index, which makes it the one Delaunay triangulation.
 void expect_delaunay(const Points& points, const Triangulation& t) {
     for (const Tet tet : t.tets.indices()) {
         const auto& v = t.tets[tet];
@@ -90,8 +91,8 @@ void expect_delaunay(const Points& points, const Triangulation& t) {
     }
 }
 
-/// Every point is a vertex or equal to one of lower index; the hull is one closed convex surface with the volume of the
-/// tets; Euler's relation holds for the ball that they fill.
+/// Every point is a vertex or equal to one of lower index; the hull is one closed convex surface with the
+/// volume of the tets; Euler's relation holds for the ball that they fill.
 void expect_fills_hull(const Points& points, const Triangulation& t) {
     std::set<Vertex> vertices;
     std::set<std::pair<Vertex, Vertex>> edges, hull_edges;
@@ -247,7 +248,8 @@ TEST(Hilbert, GoesFromNeighbourToNeighbour) {
     std::map<std::uint64_t, Vec3> along;
     for (std::uint32_t i = 0; i < n; ++i)
         for (std::uint32_t j = 0; j < n; ++j)
-            for (std::uint32_t k = 0; k < n; ++k) along[hilbert_index({i, j, k})] = {1.0 * i, 1.0 * j, 1.0 * k};
+            for (std::uint32_t k = 0; k < n; ++k)
+                along[hilbert_index({i, j, k})] = {1.0 * i, 1.0 * j, 1.0 * k};
     ASSERT_EQ(along.size(), n * n * n);
     EXPECT_EQ(along.rbegin()->first, n * n * n - 1);
     for (auto next = std::next(along.begin()); next != along.end(); ++next)
