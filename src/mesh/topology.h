@@ -28,6 +28,9 @@ struct Facet {
 /// The corner of `neighbour` that faces the facet `f`, across which it lies.
 [[nodiscard]] int mirror_corner(const Mesh& mesh, Facet f);
 
+/// All tets of the mesh, without free slots.
+[[nodiscard]] std::vector<Tet> all_tets(const Mesh& mesh);
+
 /// The tets at `v`, each once.
 [[nodiscard]] std::vector<Tet> ball(const Mesh& mesh, Vertex v);
 /// As above, into `tets`, which is emptied first: for loops that ask often.

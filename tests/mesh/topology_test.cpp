@@ -2,6 +2,7 @@
 
 #include "base/predicates.h"
 #include "mesh/meshes.h"
+#include "mesh/proposals.h"
 
 #include <gtest/gtest.h>
 
@@ -58,6 +59,14 @@ TEST(MirrorCorner, LeadsBackFromEveryFacet) {
             ++inner;
         }
     EXPECT_EQ(inner, 48 * 4 - 6 * 8);  // two triangles per square, four squares per face
+}
+
+TEST(AllTets, LeavesOutFreeSlots) {
+    Mesh mesh = shell_of_edge(3);
+    auto made = replace_cells(mesh, edge_removal(mesh, axis));  // two
+    std::ranges::sort(made);
+    EXPECT_EQ(mesh.tets.size(), 3u);
+    EXPECT_EQ(all_tets(mesh), made);
 }
 
 TEST(Ball, IsEveryTetAtTheVertexOnce) {
