@@ -1,7 +1,8 @@
 // May the bodies stand where they stand, and go where they go?
 //
-// The distance between two ellipsoids is found by alternating projections [Cheney, Goldstein 1959, "Proximity maps
-// for convex sets"]: from a point of one to the nearest of the other and back, until it falls no more.
+// The distance between two ellipsoids is found by alternating projections [Cheney, Goldstein 1959, "Proximity
+// maps for convex sets"]: from a point of one to the nearest of the other and back. Planes across the way
+// found bound the distance from below, so that it is known when that is near enough.
 
 #include "base/error.h"
 #include "domain/domain.h"
@@ -10,7 +11,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 
 namespace kropla {
@@ -38,23 +38,37 @@ std::string size_advice(double surface_size, double would_do) {
            " would do";
 }
 
-/// Projects from shape to shape until the distance stops falling [m]; 0 if they overlap. The limit of rounds bounds
-/// the work for bodies that all but touch, where the distance falls slowly: it is found too large by little then.
+/// How far the shape reaches from its centre along the unit vector `direction` [m].
+double reach_along(const Shape& shape, const Vec3& direction) {
+    const Vec3 d = rotated_back(shape.orientation, direction);
+    return norm({shape.semi_axes.x * d.x, shape.semi_axes.y * d.y, shape.semi_axes.z * d.z});
+}
+
+/// The gap as two parallel planes see it that touch the shapes from between; never more than the true one
+/// [m].
+double gap_along(const Shape& a, const Shape& b, const Vec3& direction) {
+    return dot(direction, b.centre - a.centre) - reach_along(a, direction) - reach_along(b, direction);
+}
+
+/// Projects from shape to shape until planes across the way found confirm its length [m]; 0 if the shapes
+/// overlap. The limit of rounds bounds the work for shapes that all but touch: their gap is found too small
+/// then, or 0.
 double alternating_distance(const Shape& a, const Shape& b) {
     constexpr int rounds = 2000;
-    const double touching = 1e-12 * std::min(least_curvature_radius(a), least_curvature_radius(b));
+    constexpr double accuracy = 1e-9;  // relative
     Vec3 on_a = a.centre;
-    double found = std::numeric_limits<double>::infinity();
+    double confirmed = 0;
     for (int i = 0; i < rounds; ++i) {
-        if (signed_distance(b, on_a) <= touching) return 0;
+        if (signed_distance(b, on_a) <= 0) return 0;
         const Vec3 on_b = closest_point(b, on_a);
-        if (signed_distance(a, on_b) <= touching) return 0;
+        if (signed_distance(a, on_b) <= 0) return 0;
         on_a = closest_point(a, on_b);
-        const double now = distance(on_a, on_b);
-        if (now >= found * (1 - 1e-14)) return now;
-        found = now;
+        const double found = distance(on_a, on_b);
+        if (found == 0) return 0;
+        confirmed = std::max(confirmed, gap_along(a, b, (on_b - on_a) / found));
+        if (confirmed >= found * (1 - accuracy)) break;
     }
-    return found;
+    return confirmed;
 }
 
 double gap_between(const Shape& a, const Shape& b) {
@@ -85,8 +99,8 @@ WallGap narrowest_wall_gap(const Box& box, const Shape& shape) {
 
 /// "its lowest z is -0.00012 m, the box begins at 0 m"
 std::string overstep(const WallGap& w) {
-    return std::string("its ") + (w.at_min ? "lowest " : "highest ") + "xyz"[w.axis] + " is " + metres(w.body) +
-           ", the box " + (w.at_min ? "begins" : "ends") + " at " + metres(w.wall);
+    return std::string("its ") + (w.at_min ? "lowest " : "highest ") + "xyz"[w.axis] + " is " +
+           metres(w.body) + ", the box " + (w.at_min ? "begins" : "ends") + " at " + metres(w.wall);
 }
 
 void check_curvature(const Body& body, const Shape& shape, double surface_size) {
@@ -115,9 +129,8 @@ void check_gap(const Body& a, const Body& b, double gap, double surface_size, do
 }
 
 bool is_finite(const Pose& pose) {
-    return kropla::is_finite(pose.displacement) && std::ranges::all_of(pose.rotation.axes, [](const Vec3& axis) {
-               return kropla::is_finite(axis);
-           });
+    return kropla::is_finite(pose.displacement) &&
+           std::ranges::all_of(pose.rotation.axes, [](const Vec3& axis) { return kropla::is_finite(axis); });
 }
 
 std::vector<Shape> shapes_on_path(const Domain& domain, double t) {
@@ -129,8 +142,8 @@ std::vector<Shape> shapes_on_path(const Domain& domain, double t) {
         shapes.push_back(placed(body.shape, pose));
         const WallGap w = narrowest_wall_gap(domain.box, shapes.back());
         if (w.gap() < 0)
-            throw DomainError(named(body) + ": motion takes it out of the box at t = " + written(t, "s") + ": " +
-                              overstep(w));
+            throw DomainError(named(body) + ": motion takes it out of the box at t = " + written(t, "s") +
+                              ": " + overstep(w));
     }
     return shapes;
 }
@@ -141,8 +154,8 @@ void check_placement(const Domain& domain, double t, double least_gap) {
     assert(domain.size.surface > 0 && domain.size.far >= domain.size.surface && domain.size.growth >= 0);
     const Snapshot at = snapshot(domain, t);
     for (std::size_t i = 0; i < at.shapes.size(); ++i) {
-        assert(is_finite(at.shapes[i].centre) && at.shapes[i].semi_axes.x > 0 && at.shapes[i].semi_axes.y > 0 &&
-               at.shapes[i].semi_axes.z > 0);
+        assert(is_finite(at.shapes[i].centre) && at.shapes[i].semi_axes.x > 0 &&
+               at.shapes[i].semi_axes.y > 0 && at.shapes[i].semi_axes.z > 0);
         check_wall_gap(domain.bodies[i], at.shapes[i], domain, least_gap);
         check_curvature(domain.bodies[i], at.shapes[i], domain.size.surface);
         for (std::size_t j = 0; j < i; ++j)

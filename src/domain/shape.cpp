@@ -1,9 +1,9 @@
 // Ellipsoids and their rigid motion.
 //
-// The closest point follows [Eberly 2013, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid"]:
-// the largest root of one convex, falling function of one variable. Changed against it: the variable is the distance
-// from the function's last pole, so that nothing cancels near it, and Newton starts at a point that is surely left of
-// the root and near it, so that no bisection is needed.
+// The closest point follows [Eberly 2013, "Distance from a Point to an Ellipse, an Ellipsoid, or a
+// Hyperellipsoid"]: the largest root of one convex, falling function of one variable. Changed against it: the
+// variable is the distance from the function's last pole, so that nothing cancels near it, and Newton starts
+// at a point that is surely left of the root and near it, so that no bisection is needed.
 
 #include "domain/shape.h"
 
@@ -44,9 +44,9 @@ namespace {
 double least(const Vec3& a) { return std::min({a.x, a.y, a.z}); }
 double greatest(const Vec3& a) { return std::max({a.x, a.y, a.z}); }
 
-/// The root u >= 0 of sum (r_i z_i / (u + r_i - 1))^2 = 1, where r_i = (a_i / a_min)^2 and z_i = |p_i| / a_i; 0 if the
-/// sum is below 1 everywhere. Each term alone is at most 1 at the start, so the sum is at most 3 there; it is convex
-/// and falling, so Newton's steps rise to the root without passing it.
+/// The root u >= 0 of sum (r_i z_i / (u + r_i - 1))^2 = 1, where r_i = (a_i / a_min)^2 and z_i = |p_i| / a_i;
+/// 0 if the sum is below 1 everywhere. Each term alone is at most 1 at the start, so the sum is at most 3
+/// there; it is convex and falling, so Newton's steps rise to the root without passing it.
 double multiplier(const Vec3& r, const Vec3& z) {
     double u = 0;
     for (int i = 0; i < 3; ++i) u = std::max(u, r[i] * z[i] - (r[i] - 1));

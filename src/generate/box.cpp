@@ -17,8 +17,8 @@ std::vector<Vec3> box_corners(const Box& box) {
 
 namespace {
 
-/// Points from `start` along `axis` to `end`, both left out. The count of edges is the integral of 1 / size, rounded;
-/// the points divide that integral evenly.
+/// Points from `start` along `axis` to `end`, both left out. The count of edges is the integral of 1 / size,
+/// rounded; the points divide that integral evenly.
 void space_evenly(const Snapshot& at, const Vec3& start, int axis, double end, std::vector<Vec3>& into) {
     constexpr double step = 1.0 / 16;  // of the local size
     std::vector<double> places = {start[axis]}, integral = {0};
@@ -34,7 +34,8 @@ void space_evenly(const Snapshot& at, const Vec3& start, int axis, double end, s
     int k = 1;
     for (std::size_t i = 1; i < places.size(); ++i)
         for (; k < edges && integral[i] >= integral.back() * k / edges; ++k) {
-            const double part = (integral.back() * k / edges - integral[i - 1]) / (integral[i] - integral[i - 1]);
+            const double part =
+                (integral.back() * k / edges - integral[i - 1]) / (integral[i] - integral[i - 1]);
             Vec3 x = start;
             x[axis] = places[i - 1] + part * (places[i] - places[i - 1]);
             into.push_back(x);
@@ -66,7 +67,8 @@ bool lies_on_face(const Box& box, Patch patch, const Vec3& x) {
 
 Patch shared_face(const Box& box, std::initializer_list<Vec3> points) {
     for (Patch patch(0); patch.value < 6; ++patch.value)
-        if (std::ranges::all_of(points, [&](const Vec3& x) { return lies_on_face(box, patch, x); })) return patch;
+        if (std::ranges::all_of(points, [&](const Vec3& x) { return lies_on_face(box, patch, x); }))
+            return patch;
     return {};
 }
 

@@ -1,9 +1,10 @@
 // The initial mesh (paper 1.1): points, Delaunay, identification of the bodies.
 //
-// A surface triangle is a facet of the Delaunay mesh if a sphere through its corners is empty. Where one is not there,
-// points in its diametral sphere are removed; where that does not do, an edge of it is split, as in [Shewchuk 1998,
-// "Tetrahedral mesh generation by Delaunay refinement"], with the new point on the body's surface. The interior of
-// a body is then what can be reached from the inner side of its surface without crossing a surface.
+// A surface triangle is a facet of the Delaunay mesh if a sphere through its corners is empty. Where one is
+// not there, points in its diametral sphere are removed; where that does not do, an edge of it is split, as
+// in [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay refinement"], with the new point on the body's
+// surface. The interior of a body is then what can be reached from the inner side of its surface without
+// crossing a surface.
 
 #include "base/error.h"
 #include "generate/box.h"
@@ -122,12 +123,14 @@ std::size_t clear_sphere(std::vector<Vec3>& others, const Box& box, const Sphere
 }
 
 /// Splits the longest edges of `triangles`, all of one body, and frees the space around the new points.
-void refine_surface(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles, const Snapshot& at) {
+void refine_surface(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles,
+                    const Snapshot& at) {
     Skin skin = make_skin(draft.surfaces[body], at.shapes[body].centre);
     const Skin before = skin;
     for (std::size_t i : triangles) {
         const Triangle triangle(i);
-        if (skin.triangles[triangle] != before.triangles[triangle]) continue;  // split from across an edge of it
+        if (skin.triangles[triangle] != before.triangles[triangle])
+            continue;  // split from across an edge of it
         const Vertex added = split_longest_edge(skin, at.shapes[body], triangle);
         const double half_edge = distance(skin.points[added], skin.points[skin.triangles[triangle][0]]);
         clear_sphere(draft.others, at.box, {skin.points[added], half_edge});
@@ -141,7 +144,8 @@ void recover(Draft& draft, const std::vector<SurfaceFacet>& found, const Snapsho
     std::size_t cleared = 0;
     for (const SurfaceFacet& f : found)
         if (!f.inner)
-            cleared += clear_sphere(draft.others, at.box, diametral_sphere(draft.surfaces[f.body], f.triangle));
+            cleared +=
+                clear_sphere(draft.others, at.box, diametral_sphere(draft.surfaces[f.body], f.triangle));
     if (cleared > 0) return;
     for (std::size_t body = 0; body < draft.surfaces.size(); ++body) {
         std::vector<std::size_t> missing;
@@ -187,8 +191,8 @@ std::vector<BoundaryFacet> box_facets(const Triangulation& filled, const Array<V
             std::array<Vertex, 3> corners;
             for (std::size_t k = 0; k < 3; ++k)
                 corners[k] = filled.tets[t][static_cast<std::size_t>(tet_facets[i][k])];
-            facets.push_back(
-                {corners, shared_face(box, {position[corners[0]], position[corners[1]], position[corners[2]]})});
+            facets.push_back({corners, shared_face(box, {position[corners[0]], position[corners[1]],
+                                                         position[corners[2]]})});
         }
     return facets;
 }
@@ -196,7 +200,8 @@ std::vector<BoundaryFacet> box_facets(const Triangulation& filled, const Array<V
 }  // namespace
 
 Mesh generate_mesh(const Domain& domain, std::uint64_t seed) {
-    constexpr double least_gap = 1.0;  // of the surface size: room for one layer of tets
+    constexpr double least_gap =
+        0.25;  // of the surface size: R/r = 7 for the tet across on an equilateral one
     constexpr int recoveries = 20;
     check_placement(domain, 0, least_gap);
     const Snapshot at = snapshot(domain, 0);
@@ -215,7 +220,8 @@ Mesh generate_mesh(const Domain& domain, std::uint64_t seed) {
         const std::vector<BoundaryFacet> boundary = box_facets(filled, position, at.box);
         return make_mesh(std::move(position), std::move(filled.tets), region, boundary);
     }
-    throw DomainError("the bodies' surfaces cannot be made facets of the mesh; a smaller size.surface may do");
+    throw DomainError(
+        "the bodies' surfaces cannot be made facets of the mesh; a smaller size.surface may do");
 }
 
 }  // namespace kropla

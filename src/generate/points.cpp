@@ -1,8 +1,8 @@
 // The points of the initial mesh (paper 1.1): random candidates, accepted if no point lies within r = Fun(R).
 //
 // Boundaries first: surfaces of bodies, corners, edges and faces of the box, each a maximal sample of its own
-// dimension; then the inside, at a distance from the boundaries so that no flat tets stand on them and the surfaces'
-// triangles keep their diametral spheres empty.
+// dimension; then the inside, at a distance from the boundaries so that no flat tets stand on them and the
+// surfaces' triangles keep their diametral spheres empty.
 
 #include "generate/box.h"
 #include "generate/clearance.h"
@@ -13,24 +13,28 @@ namespace kropla {
 
 namespace {
 
-// The spacing r of a maximal sample, per target size, whose Delaunay mesh has edges of the target size on the mean:
-// measured on the default case after relaxation (inner 1.00, faces 1.00, all 1.01).
+// The spacing r of a maximal sample, per target size, whose Delaunay mesh has edges of the target size on the
+// mean: measured on the default case after relaxation (inner 1.00, faces 1.00, all 1.01).
 constexpr double spacing_on_face = 0.76;
 constexpr double spacing_inside = 0.76;
 
-void append(std::vector<Vec3>& to, const std::vector<Vec3>& more) { to.insert(to.end(), more.begin(), more.end()); }
+void append(std::vector<Vec3>& to, const std::vector<Vec3>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
 
 /// A seed for each independent stage of the sampling.
 std::uint64_t stage_seed(std::uint64_t seed, std::size_t stage) { return random_bits(seed, stage); }
 
-std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector<Vec3>& edge_points, Random random) {
+std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector<Vec3>& edge_points,
+                              Random random) {
     const auto spacing = [&](const Vec3& x) { return spacing_on_face * target_size(at, x); };
     const auto room_for = [&](const Vec3& x) { return clearance_on_face(at, patch, x); };
     PointGrid taken;
     for (const Vec3& x : edge_points)
         if (lies_on_face(at.box, patch, x)) taken.insert(x, spacing(x));
     return fill_room(face_of_box(at.box, patch),
-                     {spacing, spacing_on_face * at.size.growth, room_for, clearance_slope(at)}, taken, random);
+                     {spacing, spacing_on_face * at.size.growth, room_for, clearance_slope(at)}, taken,
+                     random);
 }
 
 std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& boundary_points, Random random) {
@@ -38,7 +42,8 @@ std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& bou
     const auto room_for = [&](const Vec3& x) { return clearance(at, x); };
     PointGrid taken;
     for (const Vec3& x : boundary_points) taken.insert(x, spacing(x));
-    return fill_room(at.box, {spacing, spacing_inside * at.size.growth, room_for, clearance_slope(at)}, taken, random);
+    return fill_room(at.box, {spacing, spacing_inside * at.size.growth, room_for, clearance_slope(at)}, taken,
+                     random);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Relaxation of the points before the bodies are identified.
 //
-// Each point moves to the mean of the circumcentres of its tets, weighted by their volumes over the cube of the target
-// size: the optimal Delaunay triangulation of [Chen, Xu 2004; Alliez, Cohen-Steiner, Yvinec, Desbrun 2005, "Variational
-// tetrahedral meshing"], graded. Points of a face of the box do the same among its triangles, which in a Delaunay mesh
-// of a box are the Delaunay triangulation of the face.
+// Each point moves to the mean of the circumcentres of its tets, weighted by their volumes over the cube of
+// the target size: the optimal Delaunay triangulation of [Chen, Xu 2004; Alliez, Cohen-Steiner, Yvinec,
+// Desbrun 2005, "Variational tetrahedral meshing"], graded. Points of a face of the box do the same among its
+// triangles, which in a Delaunay mesh of a box are the Delaunay triangulation of the face.
 
 #include "generate/relax.h"
 
@@ -63,7 +63,8 @@ void pull_on_face(Relaxation& r, const std::array<Vertex, 3>& triangle) {
     const double weight = norm(cross(b - a, c - a)) / (size * size);
     const Vec3 centre = triangle_circumcentre(a, b, c);
     for (Vertex v : triangle)
-        if (std::has_single_bit(r.faces[static_cast<std::size_t>(v.value)])) pull_towards(r, v, centre, weight);
+        if (std::has_single_bit(r.faces[static_cast<std::size_t>(v.value)]))
+            pull_towards(r, v, centre, weight);
 }
 
 Relaxation pulls(const std::vector<Vec3>& points, const Snapshot& at) {
@@ -90,7 +91,8 @@ Vec3 pulled(const Snapshot& at, const Vec3& x, unsigned faces, const Pull& pull)
         if (faces >> face & 1u) by[face / 2] = 0;  // against rounding: exactly on the face
     for (double part : {1.0, 0.5}) {
         const Vec3 to = x + part * by;
-        const double kept = faces == 0 ? clearance(at, to) : clearance_on_face(at, Patch(std::countr_zero(faces)), to);
+        const double kept =
+            faces == 0 ? clearance(at, to) : clearance_on_face(at, Patch(std::countr_zero(faces)), to);
         if (kept >= 0) return to;
     }
     return x;

@@ -1,9 +1,10 @@
 // Maximal random samples with a spacing that varies.
 //
-// After [Ebeida, Mitchell, Patney, Davidson, Owens 2012, "A simple algorithm for maximal Poisson-disk sampling in high
-// dimensions"]: cells that are not yet covered are thrown at, then those left are split, until none is left. Changed:
-// the spacing varies in space, so the first cells are the leaves of an octree as fine as the spacing asks, and a cell
-// counts as covered with what the slope of the spacing takes away. A room may be flat: its cells split within it.
+// After [Ebeida, Mitchell, Patney, Davidson, Owens 2012, "A simple algorithm for maximal Poisson-disk
+// sampling in high dimensions"]: cells that are not yet covered are thrown at, then those left are split,
+// until none is left. Changed: the spacing varies in space, so the first cells are the leaves of an octree as
+// fine as the spacing asks, and a cell counts as covered with what the slope of the spacing takes away. A
+// room may be flat: its cells split within it.
 
 #include "generate/sampling.h"
 
@@ -43,8 +44,8 @@ void PointGrid::insert(const Vec3& x, double spacing) {
 void PointGrid::file(std::int32_t entry) {
     Entry& e = entries_[static_cast<std::size_t>(entry)];
     const double width = cell_width(e.level);
-    const std::uint64_t hash = slot_hash(e.level, cell_number(e.place.x, width), cell_number(e.place.y, width),
-                                         cell_number(e.place.z, width));
+    const std::uint64_t hash = slot_hash(e.level, cell_number(e.place.x, width),
+                                         cell_number(e.place.y, width), cell_number(e.place.z, width));
     std::int32_t& slot = slots_[hash & (slots_.size() - 1)];
     e.next = std::exchange(slot, entry);
 }
@@ -100,13 +101,14 @@ void split_cell(const Cell& cell, std::vector<Cell>& into) {
     into.insert(into.end(), parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-bool is_crowded(const SampleRule& rule, const PointGrid& taken, const Vec3& x, double radius, double spacing) {
+bool is_crowded(const SampleRule& rule, const PointGrid& taken, const Vec3& x, double radius,
+                double spacing) {
     const double change = rule.spacing_slope * radius;
     return taken.any_within(x, radius, spacing - change, spacing + change);
 }
 
-/// No point of the cell could be accepted: for want of clearance, or since one neighbour is too near to all of it.
-/// Says yes only where that is sure.
+/// No point of the cell could be accepted: for want of clearance, or since one neighbour is too near to all
+/// of it. Says yes only where that is sure.
 bool is_covered(const SampleRule& rule, const PointGrid& taken, const Cell& cell) {
     const double reach = norm(cell.half);
     if (rule.clearance(cell.centre) + rule.clearance_slope * reach < 0) return true;

@@ -10,14 +10,15 @@
 
 namespace kropla {
 
-/// Points filed by place and by the spacing they stand at, to answer: is one of them within r of x? One hash table
-/// for a pile of grids, each for the spacings of one power of two, so that neither the range of spacings nor empty
-/// space costs anything.
+/// Points filed by place and by the spacing they stand at, to answer: is one of them within r of x? One hash
+/// table for a pile of grids, each for the spacings of one power of two, so that neither the range of
+/// spacings nor empty space costs anything.
 class PointGrid {
 public:
     void insert(const Vec3& x, double spacing);
 
-    /// Is a point nearer to `x` than `radius`? Points filed with a spacing outside [least, greatest] are not seen.
+    /// Is a point nearer to `x` than `radius`? Points filed with a spacing outside [least, greatest] are not
+    /// seen.
     [[nodiscard]] bool any_within(const Vec3& x, double radius, double least, double greatest) const;
 
 private:
@@ -34,8 +35,8 @@ private:
     int lowest_level_ = 0, highest_level_ = -1;
 };
 
-/// What a maximal sample obeys: a point x stands only where clearance(x) >= 0, and is refused if another stands
-/// nearer than spacing(x). The slopes bound how fast both change.
+/// What a maximal sample obeys: a point x stands only where clearance(x) >= 0, and is refused if another
+/// stands nearer than spacing(x). The slopes bound how fast both change.
 struct SampleRule {
     std::function<double(const Vec3&)> spacing;    // r [m]
     double spacing_slope = 0;                      // [-]
@@ -43,8 +44,9 @@ struct SampleRule {
     double clearance_slope = 1;                    // [-]
 };
 
-/// Fills `room`, which may be flat, with random points until none can be added, but in gaps narrower than 1e-4
-/// spacings. The new points are filed in `taken`, whose points count as neighbours.
-[[nodiscard]] std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken, Random& random);
+/// Fills `room`, which may be flat, with random points until none can be added, but in gaps narrower than
+/// 1e-4 spacings. The new points are filed in `taken`, whose points count as neighbours.
+[[nodiscard]] std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken,
+                                          Random& random);
 
 }  // namespace kropla

@@ -1,10 +1,10 @@
 // Relaxation of a triangulated surface.
 //
-// Points move to the area-weighted mean of their triangles' centres and back onto the surface, as in the optimal
-// Delaunay triangulation of [Chen, Xu 2004]. Edges flip in turn with that: first to even out the valences, as in
-// [Botsch, Kobbelt 2004, "A remeshing approach to multiresolution modeling"], then while that raises the least angle
-// [Lawson 1977, "Software for C1 surface interpolation"]. Changed: the centre is half way between circumcentre and
-// centroid, since the first alone evens out the edges and the second the angles.
+// Points move to the area-weighted mean of their triangles' centres and back onto the surface, as in the
+// optimal Delaunay triangulation of [Chen, Xu 2004]. Edges flip in turn with that: first to even out the
+// valences, as in [Botsch, Kobbelt 2004, "A remeshing approach to multiresolution modeling"], then while that
+// raises the least angle [Lawson 1977, "Software for C1 surface interpolation"]. Changed: the centre is half
+// way between circumcentre and centroid, since the first alone evens out the edges and the second the angles.
 
 #include "generate/skin.h"
 
@@ -89,7 +89,8 @@ void equalise_valences(Skin& skin) {
         for (std::size_t i = 0; i < 3; ++i) {
             const Side side{t, i}, other = other_side(skin, side);
             const Diamond q = diamond(skin, side, other);
-            // The sum of squares falls: (e + 1)^2 - e^2 = 2 e + 1 at a and d, (e - 1)^2 - e^2 = 1 - 2 e at b and c.
+            // The sum of squares falls: (e + 1)^2 - e^2 = 2 e + 1 at a and d, (e - 1)^2 - e^2 = 1 - 2 e at b
+            // and c.
             if (excess[q.a] + excess[q.d] - excess[q.b] - excess[q.c] + 2 >= 0) continue;
             if (!faces_outwards(skin, q.a, q.b, q.d) || !faces_outwards(skin, q.a, q.d, q.c)) continue;
             flip(skin, side, other);
@@ -110,8 +111,7 @@ Array<Vertex, Vec3> relaxed_places(const Skin& skin, const Shape& shape) {
             weight[v] += area;
         }
     }
-    for (Vertex v : skin.points.indices())
-        sum[v] = closest_point(shape, skin.points[v] + sum[v] / weight[v]);
+    for (Vertex v : skin.points.indices()) sum[v] = closest_point(shape, skin.points[v] + sum[v] / weight[v]);
     return sum;
 }
 
@@ -134,7 +134,8 @@ void move_points(Skin& skin, const Array<Vertex, Vec3>& places) {
 Skin make_skin(const Surface& surface, const Vec3& inside) {
     Skin skin{inside, Array<Vertex, Vec3>(surface.points.size()), {}, {}};
     std::ranges::copy(surface.points, skin.points.begin());
-    for (const auto& [a, b, c] : surface.triangles) skin.triangles.push_back({Vertex(a), Vertex(b), Vertex(c)});
+    for (const auto& [a, b, c] : surface.triangles)
+        skin.triangles.push_back({Vertex(a), Vertex(b), Vertex(c)});
     skin.across.resize(skin.triangles.size());
     struct Half {
         Vertex low, high;
@@ -171,7 +172,8 @@ Vertex split_longest_edge(Skin& skin, const Shape& shape, Triangle t) {
         if (length(i) > length(side.corner)) side.corner = i;
     const Side other = other_side(skin, side);
     const auto [a, b, c, d] = diamond(skin, side, other);
-    const Vertex middle = skin.points.push_back(closest_point(shape, 0.5 * (skin.points[b] + skin.points[c])));
+    const Vertex middle =
+        skin.points.push_back(closest_point(shape, 0.5 * (skin.points[b] + skin.points[c])));
     // abc keeps its half at b, its half at c is new; the same of bdc.
     const Triangle s = other.triangle;
     const Triangle at_ca = skin.across[t][after(side.corner)], at_dc = skin.across[s][before(other.corner)];

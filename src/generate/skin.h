@@ -9,7 +9,8 @@ namespace kropla {
 
 using Triangle = Index<struct TriangleTag>;
 
-/// A closed triangulated surface that can be changed, all of whose triangles are seen from the point `inside`.
+/// A closed triangulated surface that can be changed, all of whose triangles are seen from the point
+/// `inside`.
 struct Skin {
     Vec3 inside;
     Array<Vertex, Vec3> points;
@@ -24,7 +25,8 @@ struct Skin {
 /// Splits the longest edge of `t`; the new point, which is returned, is put on the surface of `shape`.
 Vertex split_longest_edge(Skin& skin, const Shape& shape, Triangle t);
 
-/// Flips edges where that raises the least angle of their two triangles, until none is left. Returns how many.
+/// Flips edges where that raises the least angle of their two triangles, until none is left. Returns how
+/// many.
 int flip_edges(Skin& skin);
 
 /// Moves the points on the surface of `shape` and flips edges until the triangles are well shaped.

@@ -1,7 +1,8 @@
 // Triangulated surfaces of ellipsoids.
 //
-// As many points as the area asks for are scattered by relaxed dart throwing [McCool, Fiume 1992, "Hierarchical Poisson
-// disk sampling distributions"] and joined by the hull of them all; then the skin is relaxed (skin.cpp).
+// As many points as the area asks for are scattered by relaxed dart throwing [McCool, Fiume 1992,
+// "Hierarchical Poisson disk sampling distributions"] and joined by the hull of them all; then the skin is
+// relaxed (skin.cpp).
 
 #include "base/random.h"
 #include "generate/generate.h"
@@ -19,7 +20,9 @@ namespace kropla {
 namespace {
 
 /// How much the unit sphere's surface is stretched in its point `n` where it becomes the ellipsoid's [m^2].
-double stretch(const Vec3& a, const Vec3& n) { return norm({a.y * a.z * n.x, a.x * a.z * n.y, a.x * a.y * n.z}); }
+double stretch(const Vec3& a, const Vec3& n) {
+    return norm({a.y * a.z * n.x, a.x * a.z * n.y, a.x * a.y * n.z});
+}
 
 /// By the midpoint rule on bands of equal height; for axes of 10 : 1, right to 0.1 %.
 double surface_area(const Vec3& semi_axes) {
@@ -47,7 +50,8 @@ Vec3 random_surface_point(const Shape& shape, Random& random) {
     }
 }
 
-/// `count` points of the surface as far apart as darts will have it: the distance kept falls with each failure.
+/// `count` points of the surface as far apart as darts will have it: the distance kept falls with each
+/// failure.
 std::vector<Vec3> scatter(const Shape& shape, int count, double size, Random& random) {
     const double fall = 1 - 0.02 / count;  // per failure: some ten darts are thrown per point
     std::vector<Vec3> points;

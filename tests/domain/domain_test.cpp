@@ -1,0 +1,164 @@
+#include "base/error.h"
+#include "domain/domain.h"
+#include "domain/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace kropla;
+
+namespace {
+
+/// A box of 8 x 8 x 16 with a ball of radius 1 at height 13, as the default case in millimetres.
+Domain one_ball() {
+    Domain domain;
+    domain.box = {{-4, -4, 0}, {4, 4, 16}};
+    domain.size = {0.2, 0.1, 0.8};
+    domain.bodies = {body("droplet", ball({0, 0, 13}, 1))};
+    return domain;
+}
+
+template <class Check>
+std::string refusal(Check check) {
+    try {
+        check();
+    } catch (const DomainError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string placement(const Domain& domain) {
+    return refusal([&] { check_placement(domain, 0, 0.5); });
+}
+std::string path(const Domain& domain) {
+    return refusal([&] { check_paths(domain, 0, 0.01, 101); });
+}
+
+}  // namespace
+
+TEST(SizeField, RisesFromTheNearestBodyAndIsCapped) {
+    Domain domain = one_ball();
+    domain.bodies.push_back(body("second", ball({0, 0, 5}, 1)));
+    const Snapshot at = snapshot(domain, 0);
+    EXPECT_DOUBLE_EQ(target_size(at, {1, 0, 13}), 0.2);
+    EXPECT_DOUBLE_EQ(target_size(at, {0, 0, 13}), 0.3);  // inside, one off the surface
+    EXPECT_DOUBLE_EQ(target_size(at, {0, 0, 8}), 0.4);   // two off the second, three off the first
+    EXPECT_DOUBLE_EQ(target_size(at, {-4, -4, 0}), std::min(0.8, 0.2 + 0.1 * (std::sqrt(57.0) - 1)));
+    EXPECT_DOUBLE_EQ(target_size(Snapshot{at.box, at.size, {}}, {0, 0, 0}), 0.8);
+    EXPECT_DOUBLE_EQ(target_size(Snapshot{at.box, {0.2, 0, 0.8}, at.shapes}, {0, 0, 0}), 0.2);
+}
+
+TEST(Snapshot, TakesBodiesAlongTheirMotion) {
+    Domain domain = one_ball();
+    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1000 * t}, {}}; };
+    EXPECT_EQ(snapshot(domain, 0.003).shapes[0].centre, (Vec3{0, 0, 10}));
+}
+
+TEST(Placement, AcceptsWhatFits) {
+    Domain domain = one_ball();
+    domain.bodies.push_back(body("second", ball({0, 0, 10.8}, 1)));
+    EXPECT_EQ(placement(domain), "");
+}
+
+TEST(Placement, RefusesABodyThatIsNotInside) {
+    Domain domain = one_ball();
+    domain.bodies[0].shape.centre.z = 0.75;
+    EXPECT_EQ(placement(domain),
+              "body \"droplet\" is not inside the box: its lowest z is -0.25 m, the box begins at 0 m");
+    domain.bodies[0].shape.centre = {3.25, 0, 8};
+    EXPECT_EQ(placement(domain),
+              "body \"droplet\" is not inside the box: its highest x is 4.25 m, the box ends at 4 m");
+}
+
+TEST(Placement, RefusesABodyTooCloseToAWall) {
+    Domain domain = one_ball();
+    domain.bodies[0].shape.centre.y = -2.9375;
+    EXPECT_EQ(placement(domain),
+              "body \"droplet\" is 0.0625 m from the wall y min, too close for size.surface = 0.2 m; at most "
+              "0.12 m "
+              "would do");
+    domain.size.surface = 0.12;
+    EXPECT_EQ(placement(domain), "");
+}
+
+TEST(Placement, RefusesBodiesTooCloseOrOverlapping) {
+    Domain domain = one_ball();
+    domain.bodies.push_back(body("drop2", ball({0, 0, 10.9375}, 1)));
+    EXPECT_EQ(
+        placement(domain),
+        "body \"droplet\" and body \"drop2\" are 0.0625 m apart, too close for size.surface = 0.2 m; at most "
+        "0.12 m would do");
+    domain.bodies[1].shape.centre.z = 11.5;
+    EXPECT_EQ(placement(domain), "body \"droplet\" and body \"drop2\" overlap");
+    domain.bodies[1].shape = ball({0, 0.2, 13}, 0.3);  // one within the other
+    EXPECT_EQ(placement(domain), "body \"droplet\" and body \"drop2\" overlap");
+}
+
+TEST(Placement, RefusesASizeTooCoarseForTheCurvature) {
+    Domain domain = one_ball();
+    domain.bodies[0].shape.semi_axes = {1, 0.4, 1};
+    EXPECT_EQ(placement(domain),
+              "body \"droplet\" is curved with a radius of 0.16 m, too little for size.surface = 0.2 m; at "
+              "most 0.16 m "
+              "would do");
+}
+
+TEST(Placement, FindsTheDistanceOfEllipsoids) {
+    // Two ellipsoids of which `gap` is known: tangent planes across a line, the gap between them.
+    Random random{1};
+    for (int i = 0; i < 30; ++i) {
+        SCOPED_TRACE("pair " + std::to_string(i) + " of seed 1");
+        Domain domain = one_ball();
+        domain.box = {{-20, -20, -20}, {20, 20, 20}};
+        Shape a = random_ellipsoid(random), b = random_ellipsoid(random);
+        const Vec3 to = normalised(random_vector(random, 1));
+        const auto extreme = [](const Shape& s, Vec3 direction) {  // the surface's point farthest along it
+            const Vec3 d = rotated_back(s.orientation, direction), &r = s.semi_axes;
+            const Vec3 p = {r.x * r.x * d.x, r.y * r.y * d.y, r.z * r.z * d.z};
+            return s.centre + rotated(s.orientation, p / norm({r.x * d.x, r.y * d.y, r.z * d.z}));
+        };
+        const double gap = 0.01;
+        b.centre += extreme(a, to) + gap * to - extreme(b, -to);
+        domain.bodies = {body("a", a), body("b", b)};
+        domain.size.surface = 0.02;
+        EXPECT_EQ(refusal([&] { check_placement(domain, 0, 0.499); }), "");
+        EXPECT_NE(refusal([&] { check_placement(domain, 0, 0.501); }).find("are 0.01 m apart"),
+                  std::string::npos);
+        domain.bodies[1].shape.centre -= 1.001 * gap * to;
+        EXPECT_EQ(refusal([&] { check_placement(domain, 0, 0.501); }), "body \"a\" and body \"b\" overlap");
+    }
+}
+
+TEST(Paths, AcceptsAPathWithin) {
+    Domain domain = one_ball();
+    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1000 * t}, {}}; };
+    EXPECT_EQ(path(domain), "");
+}
+
+TEST(Paths, RefusesAPathOutOfTheBox) {
+    Domain domain = one_ball();
+    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1300 * t}, {}}; };
+    EXPECT_EQ(
+        path(domain),
+        "body \"droplet\": motion takes it out of the box at t = 0.0093 s: its lowest z is -0.09 m, the box "
+        "begins at 0 m");
+}
+
+TEST(Paths, RefusesAMotionThatIsNotANumber) {
+    for (double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        Domain domain = one_ball();
+        domain.bodies[0].motion = [=](double t) { return Pose{{t < 0.00299 ? 0 : wrong, 0, 0}, {}}; };
+        EXPECT_EQ(path(domain), "body \"droplet\": motion is not a number at t = 0.003 s");
+    }
+}
+
+TEST(Paths, RefusesPathsThatMeet) {
+    Domain domain = one_ball();
+    domain.bodies.push_back(body("drop2", ball({0, 0, 5}, 1)));
+    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1000 * t}, {}}; };
+    EXPECT_EQ(path(domain),
+              "body \"droplet\" and body \"drop2\": motion takes them into each other at t = 0.006 s");
+}
