@@ -89,7 +89,7 @@ double shell_nusselt(int n) {
 
 TEST(HeatAnalytic, ShellHasItsNusseltNumber) {
     const double coarse = std::abs(shell_nusselt(3) - 4), fine = std::abs(shell_nusselt(6) - 4);
-    EXPECT_LT(fine, 0.06);  // 1.5 %: facets of an eighth of the circle's quarter, and linear in six cells
+    EXPECT_LT(fine, 0.02);  // 0.5 %: inscribed facets of a sixth of the radius, linear in six cells
     EXPECT_GT(std::log2(coarse / fine), 1.7);
 }
 
