@@ -4,7 +4,7 @@
 #include "io/vtk.h"
 
 /// Asked by the leak sanitizer: VTK's reader loses its array of cell types where it stops at certain errors.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libvtkIOXML"; }
+extern "C" const char* __lsan_default_suppressions() { return "leak:vtkUnsignedCharArray"; }
 
 namespace kropla {
 namespace {
