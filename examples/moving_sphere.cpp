@@ -9,8 +9,6 @@
 #include <cstdio>
 #include <exception>
 
-namespace {
-
 using namespace kropla;
 
 Domain sphere_in_a_box() {
@@ -38,8 +36,6 @@ void move_to(MovingMesh& moving, double end, double dt) {
         }
     }
 }
-
-}  // namespace
 
 int main() try {
     const Domain domain = sphere_in_a_box();
