@@ -77,9 +77,9 @@ TEST(RandomOperations, KeepTheMeshAMesh) {
         Kind kinds[] = {{"insertion", try_insertion, true},   {"facet removal", try_facet_removal},
                         {"edge removal", try_edge_removal},   {"wall swap", try_wall_swap},
                         {"edge split", try_edge_split, true}, {"edge collapse", try_edge_collapse}};
-        for (int done = 0; done < 2000;) {
+        for (int done = 0; done < 1500;) {
             const Tet t(std::size_t(random.below(mesh.tets.size())));
-            const bool may_grow = count_tets(mesh) < 400;  // a mesh that stays small is soon verified
+            const bool may_grow = count_tets(mesh) < 250;  // a mesh that stays small is soon verified
             Kind& kind = kinds[random.below(6)];
             if (!alive(mesh, t) || (kind.adds_a_vertex && !may_grow)) continue;
             const auto cavity = kind.propose(mesh, t, random);
