@@ -17,6 +17,7 @@ namespace kropla {
 namespace {
 
 constexpr int most_steps = 1'000'000;  // a frame per step would be terabytes
+constexpr double least_floor = 5;  // [-] R/r; what is better is good enough for AdaptOptions, and left alone
 
 Box read_box(const CaseTable& table) {
     table.allow({"min", "max"});
@@ -24,7 +25,7 @@ Box read_box(const CaseTable& table) {
     for (int axis = 0; axis < 3; ++axis) {
         if (box.min[axis] < box.max[axis]) continue;
         table.refuse("max", fmt::format("must be above min, got {} = {} where min has {}", "xyz"[axis],
-                                          box.max[axis], box.min[axis]));
+                                        box.max[axis], box.min[axis]));
     }
     return box;
 }
@@ -35,8 +36,8 @@ std::string read_name(const CaseTable& table, const std::vector<Body>& before) {
     if (name == "surroundings") table.refuse("name", "\"surroundings\" is the name of the rest of the box");
     const auto same = std::ranges::find(before, name, &Body::name);
     if (same != before.end()) {
-        table.refuse("name", fmt::format("{} is the name of body[{}] already; names must differ", toml_text(name),
-                                           same - before.begin()));
+        table.refuse("name", fmt::format("{} is the name of body[{}] already; names must differ",
+                                         toml_text(name), same - before.begin()));
     }
     return name;
 }
@@ -75,8 +76,8 @@ Motion read_motion(const CaseTable& table, WrittenBody& written) {
     table.allow({"x", "y", "z"});
     std::vector<Expression> path;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Formula formula = table.has(axes[i]) ? table.formula(axes[i], Variables::time)
-                                                     : Formula{Expression("0"), "0"};
+        const Formula formula =
+            table.has(axes[i]) ? table.formula(axes[i], Variables::time) : Formula{Expression("0"), "0"};
         path.push_back(formula.value);
         written.motion[i] = formula.written;
     }
@@ -112,8 +113,9 @@ QualityFloor read_quality(const CaseTable& table) {
     table.allow({"max_aspect_ratio"});
     QualityFloor quality;
     if (table.has("max_aspect_ratio")) quality.max_aspect_ratio = table.number("max_aspect_ratio");
-    if (!(quality.max_aspect_ratio > 3)) {
-        table.refuse_value("max_aspect_ratio", "must be above 3, which is a perfect tet");
+    if (!(quality.max_aspect_ratio >= least_floor)) {
+        table.refuse_value("max_aspect_ratio",
+                           fmt::format("must be at least {} (3 is a perfect tet)", least_floor));
     }
     return quality;
 }
@@ -126,14 +128,14 @@ TimePlan read_time(const CaseTable& table) {
 OutputPlan read_output(const CaseTable& table) {
     table.allow({"every"});
     return table.has("every") ? OutputPlan{static_cast<int>(table.integer("every", 1, most_steps))}
-                                : OutputPlan{};
+                              : OutputPlan{};
 }
 
 RandomSeed read_random(const CaseTable& table) {
     table.allow({"seed"});
     constexpr auto most = std::numeric_limits<std::int64_t>::max();
     return table.has("seed") ? RandomSeed{static_cast<std::uint64_t>(table.integer("seed", 0, most))}
-                               : RandomSeed{};
+                             : RandomSeed{};
 }
 
 /// The domain with all sizes taken `factor` times, to two digits.
@@ -156,8 +158,10 @@ void check_count(const CaseTable& file, const Domain& domain) {
         (estimate_tets(coarsened(domain, std::exp(middle))) <= most_tets ? will_do : too_fine) = middle;
     }
     const SizeField size = coarsened(domain, std::exp(will_do)).size;
-    file.refuse("size", fmt::format("asks for about {:.1e} tets, more than {:.0e}; surface = {} and far = {} would do",
-                                    tets, most_tets, size.surface, size.far));
+    file.refuse(
+        "size",
+        fmt::format("asks for about {:.1e} tets, more than {:.0e}; surface = {} and far = {} would do", tets,
+                    most_tets, size.surface, size.far));
 }
 
 toml::table parse(std::string_view text, const std::string& name) {
@@ -188,8 +192,6 @@ Case parse_case(std::string_view text, const std::string& name) {
     return it;
 }
 
-Case read_case(const std::filesystem::path& path) {
-    return parse_case(read_file(path), path.string());
-}
+Case read_case(const std::filesystem::path& path) { return parse_case(read_file(path), path.string()); }
 
 }  // namespace kropla

@@ -15,7 +15,7 @@ namespace kropla {
 
 /// What no accepted step may exceed.
 struct QualityFloor {
-    double max_aspect_ratio = 10;  // [-] R/r, above 3 (a perfect tet)
+    double max_aspect_ratio = 10;  // [-] R/r, at least 5; 3 is a perfect tet
 };
 
 struct TimePlan {
@@ -34,7 +34,7 @@ struct RandomSeed {
 /// How the user put what the structs of a case hold in another form, each as a TOML value: `300`, `"-1.0*t"`,
 /// `{ flux = 1e4 }`. Empty: not given.
 struct WrittenBody {
-    std::string shape;                  // "sphere" or "ellipsoid", without quotes
+    std::string shape;  // "sphere" or "ellipsoid", without quotes
     std::string rotation;
     std::array<std::string, 3> motion;  // all empty: at rest
 };
@@ -60,8 +60,8 @@ struct Case {
 inline constexpr double most_tets = 2e7;
 
 /// Reads a case file (TOML; its keys are explained in docs and in what `kropla new` writes).
-/// Throws FileError if the file cannot be read, and CaseError, naming file, key, line, value and what would be right,
-/// if anything in it is wrong, missing or unknown, or if it asks for more than `most_tets`.
+/// Throws FileError if the file cannot be read, and CaseError, naming file, key, line, value and what would
+/// be right, if anything in it is wrong, missing or unknown, or if it asks for more than `most_tets`.
 [[nodiscard]] Case read_case(const std::filesystem::path& path);
 /// As above, from the text itself; `name` stands for the file in refusals.
 [[nodiscard]] Case parse_case(std::string_view text, const std::string& name);
@@ -69,7 +69,8 @@ inline constexpr double most_tets = 2e7;
 /// The case as it is run, defaults filled in, as a case file that reads as the same case again.
 [[nodiscard]] std::string to_toml(const Case& it);
 
-/// About how many tets the domain's mesh will have at t = 0: the integral of the size field's tets per volume.
+/// About how many tets the domain's mesh will have at t = 0: the integral of the size field's tets per
+/// volume.
 [[nodiscard]] double estimate_tets(const Domain& domain);
 
 }  // namespace kropla

@@ -1,7 +1,7 @@
-// How many tets a size field asks for. A perfect tet of edge h has the volume h^3 / (6 sqrt 2); the integral of its
-// inverse over the box is the count. Near a body the size changes faster than a grid can see, so there the grid takes
-// the size no closer than one of its own cells, and what is left out on either side of the surface is added in closed
-// form: area times the integral of 1/h^3 over the distance.
+// How many tets a size field asks for. A perfect tet of edge h has the volume h^3 / (6 sqrt 2); the integral
+// of its inverse over the box is the count. Near a body the size changes faster than a grid can see, so there
+// the grid takes the size no closer than one of its own cells, and what is left out on either side of the
+// surface is added in closed form: area times the integral of 1/h^3 over the distance.
 #include "app/case.h"
 
 #include <algorithm>
@@ -27,11 +27,13 @@ double area(const Shape& shape) {
     return 4 * std::numbers::pi * std::pow(mean, 1 / p);
 }
 
-/// The integral of 1/h^3 from the surface to `depth`, with h growing linearly up to `far`, above its value there.
+/// The integral of 1/h^3 from the surface to `depth`, with h growing linearly up to `far`, above its value
+/// there.
 double excess(const SizeField& size, double depth) {
     const double edge = size_at(size, depth);
     const double grown = size.growth * depth <= size.far - size.surface
-                             ? depth : (size.far - size.surface) / size.growth;  // where h reaches far
+                             ? depth
+                             : (size.far - size.surface) / size.growth;  // where h reaches far
     const double s = size.surface;
     const double integral = grown * (s + edge) / (2 * s * s * edge * edge);
     return integral - grown / (edge * edge * edge);

@@ -30,7 +30,8 @@ HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
     }
     const CaseTable face = faces.table(key);
     face.allow({"value", "flux"});
-    if (face.has("value") == face.has("flux")) faces.refuse(key, "must have either a value [K] or a flux [W/m^2]");
+    if (face.has("value") == face.has("flux"))
+        faces.refuse(key, "must have either a value [K] or a flux [W/m^2]");
     const bool is_value = face.has("value");
     const char* name = is_value ? "value" : "flux";
     const Formula formula = face.formula(name, Variables::time_and_place, probe);

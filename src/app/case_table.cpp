@@ -15,7 +15,8 @@ namespace {
 /// A value as a refusal shows it.
 std::string shown(const toml::node& node) {
     if (const auto text = node.value_exact<std::string>()) return toml_text(*text);
-    if (const auto number = node.value<double>(); number && node.is_number()) return fmt::format("{}", *number);
+    if (const auto number = node.value<double>(); number && node.is_number())
+        return fmt::format("{}", *number);
     if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
     if (node.is_table()) return "a table";
     if (const toml::array* array = node.as_array()) {
@@ -83,7 +84,8 @@ std::string CaseTable::text(std::string_view key) const {
     return *value;
 }
 
-std::vector<double> CaseTable::numbers(std::string_view key, std::size_t count, std::string_view meaning) const {
+std::vector<double> CaseTable::numbers(std::string_view key, std::size_t count,
+                                       std::string_view meaning) const {
     const std::string must = fmt::format("must be {} finite numbers {}", count, meaning);
     std::vector<double> values;
     const toml::array* array = node(key, must).as_array();
@@ -198,7 +200,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
     const auto far = [&](const std::string& key) { return edit_distance(word, key); };
     const auto nearest = std::ranges::min_element(known, {}, far);
     const int reach = std::max(1, static_cast<int>(word.size()) / 3);  // a slip or two, not another word
-    if (nearest != known.end() && far(*nearest) <= reach) return fmt::format("did you mean \"{}\"?", *nearest);
+    if (nearest != known.end() && far(*nearest) <= reach)
+        return fmt::format("did you mean \"{}\"?", *nearest);
     return fmt::format("known here: {}", fmt::join(known, ", "));
 }
 

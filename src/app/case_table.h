@@ -16,15 +16,16 @@
 
 namespace kropla {
 
-/// A number or an expression of the case file, and how it stands there: `300`, or `"1e4*sin(t)"` with its quotes.
+/// A number or an expression of the case file, and how it stands there: `300`, or `"1e4*sin(t)"` with its
+/// quotes.
 struct Formula {
     Expression value;
     std::string written;
 };
 
-/// A table of the case file while it is read: it knows the file, its own name and line, and refuses what is wrong
-/// with one line, "FILE: body[0].radius (line 12): must be positive, got -1". Every question throws CaseError like
-/// this if the key is missing or its value is not what is asked for.
+/// A table of the case file while it is read: it knows the file, its own name and line, and refuses what is
+/// wrong with one line, "FILE: body[0].radius (line 12): must be positive, got -1". Every question throws
+/// CaseError like this if the key is missing or its value is not what is asked for.
 class CaseTable {
 public:
     /// `name` is the table's own, as in "body[0]"; empty for the file itself. It outlives this object.
@@ -45,7 +46,8 @@ public:
     /// Three finite numbers.
     [[nodiscard]] Vec3 vec3(std::string_view key) const;
     /// As many finite numbers; `meaning` names them in a refusal.
-    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, std::string_view meaning) const;
+    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count,
+                                              std::string_view meaning) const;
     /// Finite at t = 0 and `probe`.
     [[nodiscard]] Formula formula(std::string_view key, Variables variables, const Vec3& probe = {}) const;
 
@@ -58,15 +60,16 @@ public:
 
     /// Throws: what is wrong with the value of `key`, or with its being there or not.
     [[noreturn]] void refuse(std::string_view key, std::string_view what) const;
-    /// Throws: what the value of `key` must be, and what was found: "must be positive, got -1" or "is missing; it must
-    /// be positive".
+    /// Throws: what the value of `key` must be, and what was found: "must be positive, got -1" or "is
+    /// missing; it must be positive".
     [[noreturn]] void refuse_value(std::string_view key, std::string_view must) const;
 
 private:
     [[nodiscard]] const toml::node& node(std::string_view key, std::string_view must) const;
     [[nodiscard]] double number(std::string_view key, std::string_view must) const;
     [[nodiscard]] std::string full_name(std::string_view key) const;
-    [[nodiscard]] Expression compiled(std::string_view key, const std::string& text, Variables variables) const;
+    [[nodiscard]] Expression compiled(std::string_view key, const std::string& text,
+                                      Variables variables) const;
 
     std::string file_, name_;
     const toml::table* table_;

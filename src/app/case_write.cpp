@@ -30,9 +30,10 @@ std::string heat(const HeatOptions& it, const Domain& domain, const WrittenHeat&
     for (std::size_t r = 0; r < it.regions.size(); ++r) {
         const HeatRegion& region = it.regions[r];
         const HeatMaterial& material = region.material;
-        text += fmt::format("\n[heat.region.{}]\nconductivity = {}\ndensity = {}\nspecific_heat = {}\ninitial = {}\n",
-                            toml_text(region_name(domain, r)), material.conductivity, material.density,
-                            material.specific_heat, region.initial);
+        text += fmt::format(
+            "\n[heat.region.{}]\nconductivity = {}\ndensity = {}\nspecific_heat = {}\ninitial = {}\n",
+            toml_text(region_name(domain, r)), material.conductivity, material.density,
+            material.specific_heat, region.initial);
         if (!written.sources[r].empty()) text += fmt::format("source = {}\n", written.sources[r]);
     }
     text += "\n[heat.face]\n";
@@ -51,7 +52,8 @@ std::string to_toml(const Case& it) {
         text += body(it.domain.bodies[b], it.written_bodies[b]);
     }
     const SizeField& size = it.domain.size;
-    text += fmt::format("\n[size]\nsurface = {}\ngrowth = {}\nfar = {}\n", size.surface, size.growth, size.far);
+    text +=
+        fmt::format("\n[size]\nsurface = {}\ngrowth = {}\nfar = {}\n", size.surface, size.growth, size.far);
     text += fmt::format("\n[quality]\nmax_aspect_ratio = {}\n", it.quality.max_aspect_ratio);
     text += fmt::format("\n[time]\nend = {}\nsteps = {}\n", it.time.end, it.time.steps);
     if (it.heat) text += heat(*it.heat, it.domain, it.written_heat);

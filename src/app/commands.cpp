@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "io/vtk.h"
 #include "mesh/quality.h"
+#include "report/page.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -43,8 +44,8 @@ int write_initial_mesh(const MeshOptions& options) {
     write_vtu(options.out, mesh);
     const QualitySummary quality = summarise_quality(mesh);
     fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
-               options.out.string(), quality.tets, quality.vertices, quality.max_aspect_ratio, quality.min_dihedral,
-               quality.max_dihedral);
+               options.out.string(), quality.tets, quality.vertices, quality.max_aspect_ratio,
+               quality.min_dihedral, quality.max_dihedral);
     return done;
 }
 
@@ -52,6 +53,12 @@ int check_mesh(const std::filesystem::path& file) {
     const CheckReport report = check_file(file);
     fmt::print("{}", report.text);
     return report.valid ? done : file_trouble;
+}
+
+int report_run(const std::filesystem::path& folder) {
+    write_report(folder);
+    fmt::print("{}: written\n", (folder / "report.html").string());
+    return done;
 }
 
 int start_case(const std::string& name) {
@@ -65,21 +72,25 @@ int start_case(const std::string& name) {
 struct Request {
     RunOptions run;
     MeshOptions mesh;
-    std::filesystem::path file;
+    std::filesystem::path file;  // or folder
     std::string name;
 };
 
 void describe_run(CLI::App& app, RunOptions& options) {
-    CLI::App* run = app.add_subcommand("run", "Runs a case: frames, steps.csv and a checkpoint go into a folder");
+    CLI::App* run =
+        app.add_subcommand("run", "Runs a case: frames, steps.csv and a checkpoint go into a folder");
     run->add_option("CASE", options.case_file, "the case file (TOML; see `kropla new`)")->required();
     run->add_option("--out", options.out, "the folder that the run fills")->required()->type_name("DIR");
     run->add_flag("--resume", options.resume, "go on from the checkpoint in the folder");
-    run->add_option("--threads", options.threads, "threads to use (else one per processor); the results are the same")
-        ->check(CLI::Range(1, 4096))->type_name("N");
-    run->footer("PETSc's options reach it untouched; put them last:\n"
-                "  kropla run droplet.toml --out droplet -ksp_monitor -ksp_rtol 1e-10\n"
-                "Several processes share the solution: mpirun -n 2 kropla run droplet.toml --out droplet\n"
-                "Look at the result: paraview droplet/frames.pvd");
+    run->add_option("--threads", options.threads,
+                    "threads to use (else one per processor); the results are the same")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N");
+    run->footer(
+        "PETSc's options reach it untouched; put them last:\n"
+        "  kropla run droplet.toml --out droplet -ksp_monitor -ksp_rtol 1e-10\n"
+        "Several processes share the solution: mpirun -n 2 kropla run droplet.toml --out droplet\n"
+        "Look at the result: paraview droplet/frames.pvd");
 }
 
 void describe_others(CLI::App& app, Request& request) {
@@ -92,6 +103,11 @@ void describe_others(CLI::App& app, Request& request) {
     check->add_option("FILE", request.file, "a VTU file, for example a frame of a run")->required();
     check->footer("Example: kropla check droplet/frames/00010.vtu\nExit code: 0 valid, 5 not");
 
+    CLI::App* report =
+        app.add_subcommand("report", "Writes report.html, the run on one page, into its folder");
+    report->add_option("DIR", request.file, "the folder of a run, finished or not")->required();
+    report->footer("Example: kropla report droplet");
+
     CLI::App* start = app.add_subcommand("new", "Writes a commented case to start from");
     start->add_option("NAME", request.name, "of the case: NAME.toml is written")->required();
     start->footer("Example: kropla new droplet");
@@ -103,18 +119,20 @@ void describe(CLI::App& app, Request& request) {
     app.set_help_all_flag("--help-all", "Print the help of all commands");
     describe_run(app, request.run);
     describe_others(app, request);
-    app.footer("Example:\n"
-               "  kropla new droplet\n"
-               "  kropla run droplet.toml --out droplet\n"
-               "  paraview droplet/frames.pvd\n"
-               "Exit codes: 0 done, 2 bad arguments or case, 3 the mesh cannot keep its floors, 4 the solver failed,\n"
-               "5 file trouble, 130 interrupted with a checkpoint written.");
+    app.footer(
+        "Example:\n"
+        "  kropla new droplet\n"
+        "  kropla run droplet.toml --out droplet\n"
+        "  paraview droplet/frames.pvd\n"
+        "Exit codes: 0 done, 2 bad arguments or case, 3 the mesh cannot keep its floors,\n"
+        "4 the solver failed, 5 file trouble, 130 interrupted with a checkpoint written.");
 }
 
 int dispatch(const CLI::App& app, const Request& request) {
     if (app.got_subcommand("run")) return run_case(request.run);
     if (app.got_subcommand("mesh")) return write_initial_mesh(request.mesh);
     if (app.got_subcommand("check")) return check_mesh(request.file);
+    if (app.got_subcommand("report")) return report_run(request.file);
     return start_case(request.name);
 }
 
@@ -148,13 +166,14 @@ int carry_out(const CLI::App& app, const Request& request) {
 }  // namespace
 
 PartedArguments part_arguments(const std::vector<std::string>& arguments) {
-    constexpr std::array<std::string_view, 9> beginnings = {"-ksp_", "-pc_", "-mat_", "-vec_", "-log_",
-                                                            "-sub_", "-potential_", "-options_", "-malloc_"};
+    constexpr std::array<std::string_view, 9> beginnings = {
+        "-ksp_", "-pc_", "-mat_", "-vec_", "-log_", "-sub_", "-potential_", "-options_", "-malloc_"};
     const auto is_solvers = [&](std::string_view word) {
         return std::ranges::any_of(beginnings, [&](std::string_view b) { return word.starts_with(b); });
     };
     const auto is_value = [](const std::string& word) {  // -1e-3 is a value, -ksp_monitor and --out are not
-        return word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])) || word[1] == '.';
+        return word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])) ||
+               word[1] == '.';
     };
     PartedArguments parted;
     for (std::size_t i = 0; i < arguments.size(); ++i) {

@@ -1,5 +1,5 @@
-// Formulas of the case file, compiled by muParser (https://beltoforion.de/en/muparser). Its messages are put into our
-// own words: what is wrong, and at which character.
+// Formulas of the case file, compiled by muParser (https://beltoforion.de/en/muparser). Its messages are put
+// into our own words: what is wrong, and at which character.
 #include "app/expression.h"
 
 #include "base/error.h"
@@ -30,13 +30,16 @@ std::string fault(const mu::ParserError& error, std::size_t length, Variables va
     const std::string place = at_end ? "at the end" : fmt::format("at character {}", error.GetPos() + 1);
     switch (error.GetCode()) {
         case mu::ecUNASSIGNABLE_TOKEN:
-            return fmt::format("\"{}\" {} is not known; known are {}, pi and functions such as sin, exp, sqrt",
-                               error.GetToken(), place, variables == Variables::time ? "t" : "t, x, y, z");
+            return fmt::format(
+                "\"{}\" {} is not known; known are {}, pi and functions such as sin, exp, sqrt",
+                error.GetToken(), place, variables == Variables::time ? "t" : "t, x, y, z");
         case mu::ecUNEXPECTED_EOF: return "something is missing at the end";
         case mu::ecEMPTY_EXPRESSION: return "an expression is missing";
         case mu::ecMISSING_PARENS: return fmt::format("\")\" is missing {}", place);
-        case mu::ecTOO_MANY_PARAMS: return fmt::format("too many arguments for \"{}\" {}", error.GetToken(), place);
-        case mu::ecTOO_FEW_PARAMS: return fmt::format("too few arguments for \"{}\" {}", error.GetToken(), place);
+        case mu::ecTOO_MANY_PARAMS:
+            return fmt::format("too many arguments for \"{}\" {}", error.GetToken(), place);
+        case mu::ecTOO_FEW_PARAMS:
+            return fmt::format("too few arguments for \"{}\" {}", error.GetToken(), place);
         default: return fmt::format("\"{}\" {} is out of place", error.GetToken(), place);
     }
 }

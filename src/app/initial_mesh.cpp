@@ -29,9 +29,10 @@ Mesh initial_mesh(const Case& it) {
     const QualitySummary quality = summarise_quality(mesh);
     if (quality.max_aspect_ratio <= it.quality.max_aspect_ratio) return compact(mesh).mesh;
     const Vec3 place = centroid(mesh, quality.worst);
-    throw FloorError(fmt::format("the initial mesh has a cell of aspect ratio {:.3g} at ({:.4g}, {:.4g}, {:.4g}) m, above "
-                                 "quality.max_aspect_ratio = {}; a smaller size.growth or size.far helps",
-                                 quality.max_aspect_ratio, place.x, place.y, place.z, it.quality.max_aspect_ratio));
+    throw FloorError(
+        fmt::format("the initial mesh has a cell of aspect ratio {:.3g} at ({:.4g}, {:.4g}, {:.4g}) m, above "
+                    "quality.max_aspect_ratio = {}; a smaller size.growth or size.far helps",
+                    quality.max_aspect_ratio, place.x, place.y, place.z, it.quality.max_aspect_ratio));
 }
 
 }  // namespace kropla

@@ -1,5 +1,3 @@
 #include "app/commands.h"
 
-int main(int count, char** arguments) {
-    return kropla::execute({arguments + 1, arguments + count});
-}
+int main(int count, char** arguments) { return kropla::execute({arguments + 1, arguments + count}); }

@@ -11,15 +11,15 @@ struct ProgressRow {
     int step = 0, steps = 0;        // this one, and how many there will be
     double time = 0;                // reached [s]
     double worst_aspect_ratio = 0;  // [-] R/r
-    std::string rung;               // the highest rung of the repair ladder that was needed: "smooth", "swap", ...
-    double touched_fraction = 0;    // [-] of the cells
-    double mesh_seconds = 0;        // of this step
+    std::string rung;  // the highest rung of the repair ladder that was needed: "smooth", "swap", ...
+    double touched_fraction = 0;         // [-] of the cells
+    double mesh_seconds = 0;             // of this step
     std::optional<double> heat_seconds;  // of this step; nothing: no heat in the case
-    double seconds_left = 0;        // of the run, estimated
+    double seconds_left = 0;             // of the run, estimated
 };
 
-/// One line without its end: `step 12/50  t 2.40 ms  worst R/r 5.8  swap  touched 7.3 %  mesh 0.08 s ...`. Columns
-/// stand under each other from step to step.
+/// One line without its end: `step 12/50  t 2.40 ms  worst R/r 5.8  swap  touched 7.3 %  mesh 0.08 s ...`.
+/// Columns stand under each other from step to step.
 [[nodiscard]] std::string progress_line(const ProgressRow& row);
 
 /// A duration in the unit that suits it, three digits: "2.40 ms".

@@ -8,14 +8,14 @@ namespace kropla {
 
 struct RunOptions {
     std::filesystem::path case_file;
-    std::filesystem::path out;  // the folder that the run fills
-    bool resume = false;        // go on from the folder's checkpoint
-    int threads = 0;            // 0: as many as there are processors
+    std::filesystem::path out;                // the folder that the run fills
+    bool resume = false;                      // go on from the folder's checkpoint
+    int threads = 0;                          // 0: as many as there are processors
     std::vector<std::string> solver_options;  // PETSc's, as given: "-ksp_type", "cg"
 };
 
-/// Runs a case from start, or from its checkpoint, to end. Returns the exit code: 0, or 130 if it was interrupted and
-/// left a checkpoint. Throws CaseError, DomainError, FloorError, SolverError or FileError.
+/// Runs a case from start, or from its checkpoint, to end. Returns the exit code: 0, or 130 if it was
+/// interrupted and left a checkpoint. Throws CaseError, DomainError, FloorError, SolverError or FileError.
 [[nodiscard]] int run(const RunOptions& options);
 
 }  // namespace kropla

@@ -15,14 +15,16 @@ void check_run_folder(const RunOptions& options) {
     }
     if (options.resume) {
         if (std::filesystem::exists(folder / "checkpoint.h5")) return;
-        throw CaseError(fmt::format("{}: has no checkpoint.h5 to resume from; leave --resume out to start the run",
-                                    folder.string()));
+        throw CaseError(fmt::format(
+            "{}: has no checkpoint.h5 to resume from; leave --resume out to start the run", folder.string()));
     }
     constexpr std::array<const char*, 4> traces = {"case.toml", "steps.csv", "frames.pvd", "checkpoint.h5"};
     for (const char* trace : traces) {
         if (!std::filesystem::exists(folder / trace)) continue;
-        throw CaseError(fmt::format("{}: holds a run already; add --resume to go on with it, or name another folder "
-                                    "with --out", folder.string()));
+        throw CaseError(
+            fmt::format("{}: holds a run already; add --resume to go on with it, or name another folder "
+                        "with --out",
+                        folder.string()));
     }
 }
 

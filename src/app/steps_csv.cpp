@@ -13,7 +13,8 @@ namespace kropla {
 namespace {
 
 constexpr std::string_view columns =
-    "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,min_dihedral [deg],"
+    "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,min_dihedral "
+    "[deg],"
     "max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,largest_ring,global_remeshes,"
     "touched_fraction,mesh_seconds [s],simulate_seconds [s],transfer_seconds [s]";
 
@@ -40,8 +41,8 @@ std::string kept(const std::filesystem::path& file, const std::string& header, i
         text += line + "\n";
     }
     if (reached != last_step) {
-        throw FileError(fmt::format("{}: has no row for step {}, after which the run is to go on", file.string(),
-                                    last_step));
+        throw FileError(fmt::format("{}: has no row for step {}, after which the run is to go on",
+                                    file.string(), last_step));
     }
     return text;
 }
@@ -57,11 +58,11 @@ std::string csv_header(const std::vector<FieldBalance>& fields) {
 }
 
 std::string csv_line(const StepRow& r) {
-    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.step, r.time,
-                                   r.dt, r.attempts, r.vertices, r.tets, r.prisms, r.max_aspect_ratio,
-                                   r.p999_aspect_ratio, r.min_dihedral, r.max_dihedral, r.smoothing_sweeps, r.swaps,
-                                   r.splits, r.collapses, r.local_remeshes, r.largest_ring, r.global_remeshes,
-                                   r.touched_fraction, r.mesh_seconds, r.simulate_seconds, r.transfer_seconds);
+    std::string line = fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.step, r.time, r.dt, r.attempts,
+        r.vertices, r.tets, r.prisms, r.max_aspect_ratio, r.p999_aspect_ratio, r.min_dihedral, r.max_dihedral,
+        r.smoothing_sweeps, r.swaps, r.splits, r.collapses, r.local_remeshes, r.largest_ring,
+        r.global_remeshes, r.touched_fraction, r.mesh_seconds, r.simulate_seconds, r.transfer_seconds);
     for (const FieldBalance& f : r.fields) line += fmt::format(",{},{}", f.integral, f.transfer_error);
     return line;
 }
@@ -72,7 +73,8 @@ StepsTable::StepsTable(const std::filesystem::path& file, const std::vector<Fiel
     if (!out_) throw FileError(fmt::format("{}: cannot be written", file.string()));
 }
 
-StepsTable::StepsTable(const std::filesystem::path& file, const std::vector<FieldBalance>& fields, int last_step)
+StepsTable::StepsTable(const std::filesystem::path& file, const std::vector<FieldBalance>& fields,
+                       int last_step)
     : file_(file) {
     write_file(file, kept(file, csv_header(fields), last_step));
     out_.open(file, std::ios::binary | std::ios::app);

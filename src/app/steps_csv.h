@@ -28,7 +28,7 @@ struct StepRow {
     int local_remeshes = 0;
     int largest_ring = 0;  // of cells around a cluster that local remeshing had to take in
     int global_remeshes = 0;
-    double touched_fraction = 0;                                         // [-] of the cells
+    double touched_fraction = 0;                                          // [-] of the cells
     double mesh_seconds = 0, simulate_seconds = 0, transfer_seconds = 0;  // [s]
     std::vector<FieldBalance> fields;  // the same ones, in the same order, in each row of a run
 };
@@ -43,8 +43,8 @@ class StepsTable {
 public:
     /// Starts the file anew, with the header; `fields` name what the rows will have.
     StepsTable(const std::filesystem::path& file, const std::vector<FieldBalance>& fields);
-    /// Continues the file after `last_step`; later rows are cut off, and so is a row that was not written to its end.
-    /// Throws FileError also if the file has other columns, or does not reach `last_step`.
+    /// Continues the file after `last_step`; later rows are cut off, and so is a row that was not written to
+    /// its end. Throws FileError also if the file has other columns, or does not reach `last_step`.
     StepsTable(const std::filesystem::path& file, const std::vector<FieldBalance>& fields, int last_step);
 
     /// Throws FileError if the row cannot be written.

@@ -1,4 +1,5 @@
-// Every refusal of a case file, word for word: one line that names file, key, line and value, and what would be right.
+// Every refusal of a case file, word for word: one line that names file, key, line and value, and what would
+// be right.
 #include "app/case.h"
 #include "base/error.h"
 #include "case_text.h"
@@ -33,7 +34,8 @@ TEST(CaseErrors, UnknownKeysComeWithASuggestion) {
         {"radius =", "radus =", "body[0].radus (line 8): unknown key; did you mean \"radius\"?"},
         {"centre =", "center =", "body[0].center (line 7): unknown key; did you mean \"centre\"?"},
         {"[size]", "[sizes]", "sizes (line 19): unknown key; did you mean \"size\"?"},
-        {"growth = 0.15", "slope = 0.15", "size.slope (line 21): unknown key; known here: surface, growth, far"},
+        {"growth = 0.15", "slope = 0.15",
+         "size.slope (line 21): unknown key; known here: surface, growth, far"},
         {"z = \"-1.0*t\"", "w = 1", "body[0].motion.w (line 12): unknown key; did you mean \"x\"?"},
         {"[heat.region.droplet]", "[heat.region.drop]",
          "heat.region.drop (line 33): unknown key; known here: surroundings, droplet, egg \"2\""},
@@ -58,19 +60,22 @@ TEST(CaseErrors, MissingKeys) {
 
 TEST(CaseErrors, WrongTypes) {
     expect_refusals({
-        {"radius = 0.001", "radius = \"big\"", "body[0].radius (line 8): must be a finite number, got \"big\""},
+        {"radius = 0.001", "radius = \"big\"",
+         "body[0].radius (line 8): must be a finite number, got \"big\""},
         {"name = \"droplet\"", "name = 3", "body[0].name (line 5): must be a text in quotes, got 3"},
         {"centre = [0.0, 0.0, 0.013]", "centre = [0, 0]",
          "body[0].centre (line 7): must be 3 finite numbers [x, y, z], got [0, 0]"},
         {"centre = [0.0, 0.0, 0.013]", "centre = [0, 0, nan]",
          "body[0].centre (line 7): must be 3 finite numbers [x, y, z], got [0, 0, nan]"},
-        {"steps = 40", "steps = 40.5", "time.steps (line 27): must be a whole number from 1 to 1000000, got 40.5"},
+        {"steps = 40", "steps = 40.5",
+         "time.steps (line 27): must be a whole number from 1 to 1000000, got 40.5"},
         {"[quality]\nmax_aspect_ratio = 9.5", "[[quality]]\nmax_aspect_ratio = 9.5",
          "quality (line 23): must be a table [quality], got [a table]"},
         {"x = \"0.0003*sin(4*pi*t/0.01)\"", "x = true",
          "body[0].motion.x (line 10): must be a finite number or an expression in quotes, got true"},
         {"z_min = \"insulated\"", "z_min = 300",
-         "heat.face.z_min (line 47): must be \"insulated\", { value = ... } [K] or { flux = ... } [W/m^2], got 300"},
+         "heat.face.z_min (line 47): must be \"insulated\", { value = ... } [K] or { flux = ... } [W/m^2], "
+         "got 300"},
         {"{ value = 300 }", "{ value = 300, flux = 1 }",
          "heat.face.x_min (line 45): must have either a value [K] or a flux [W/m^2]"},
     });
@@ -97,7 +102,7 @@ TEST(CaseErrors, ValuesOutOfRange) {
         {"growth = 0.15", "growth = 1.5", "size.growth (line 21): must be from 0 to 1, got 1.5"},
         {"far = 7e-4", "far = 2e-4", "size.far (line 22): must be at least surface = 0.0003, got 0.0002"},
         {"max_aspect_ratio = 9.5", "max_aspect_ratio = 3",
-         "quality.max_aspect_ratio (line 24): must be above 3, which is a perfect tet, got 3"},
+         "quality.max_aspect_ratio (line 24): must be at least 5 (3 is a perfect tet), got 3"},
         {"end = 0.01", "end = 0", "time.end (line 26): must be positive, got 0"},
         {"steps = 40", "steps = 0", "time.steps (line 27): must be a whole number from 1 to 1000000, got 0"},
         {"steps = 40", "steps = 2000000",
@@ -117,7 +122,8 @@ TEST(CaseErrors, Bodies) {
          "body[0].name (line 5): \"surroundings\" is the name of the rest of the box"},
         {"name = \"egg \\\"2\\\"\"", "name = \"droplet\"",
          "body[1].name (line 14): \"droplet\" is the name of body[0] already; names must differ"},
-        {"\"sphere\"", "\"cube\"", "body[0].shape (line 6): must be \"sphere\" or \"ellipsoid\", got \"cube\""},
+        {"\"sphere\"", "\"cube\"",
+         "body[0].shape (line 6): must be \"sphere\" or \"ellipsoid\", got \"cube\""},
         {"\"sphere\"", "\"ellipsoid\"", "body[0].radius (line 8): an ellipsoid has axes = [a, b, c] instead"},
         {"\"ellipsoid\"", "\"sphere\"", "body[1].axes (line 17): a sphere has a radius instead"},
         {"[body.motion]", "[body.layer]\ncount = 4\n[body.motion]",
@@ -131,15 +137,18 @@ TEST(CaseErrors, Expressions) {
     };
     const std::string place = "case.toml: body[0].motion.x (line 10): ";
     EXPECT_EQ(motion("1+*t"), place + "\"1+*t\": \"*\" at character 3 is out of place");
-    EXPECT_EQ(motion("2*x"), place + "\"2*x\": \"x\" at character 3 is not known; known are t, pi and functions such "
-                                     "as sin, exp, sqrt");
+    EXPECT_EQ(motion("2*x"),
+              place +
+                  "\"2*x\": \"x\" at character 3 is not known; known are t, pi and functions such "
+                  "as sin, exp, sqrt");
     EXPECT_EQ(motion("sqrt(t-1)"), place + "must be finite, but \"sqrt(t-1)\" is not a number at t = 0");
     EXPECT_EQ(motion("1/t"), place + "must be finite, but \"1/t\" is infinite at t = 0");
     EXPECT_EQ(motion(""), place + "\"\": an expression is missing");
     EXPECT_EQ(refusal(replaced(full_case, "1e4*sin(t)", "1e4*sin(t")),
               "case.toml: heat.face.y_max.flux (line 46): \"1e4*sin(t\": \")\" is missing at the end");
     EXPECT_EQ(refusal(replaced(full_case, "1e6*x*t", "1e6*u*t")),
-              "case.toml: heat.region.droplet.source (line 38): \"1e6*u*t + y - z\": \"u\" at character 5 is not known; "
+              "case.toml: heat.region.droplet.source (line 38): \"1e6*u*t + y - z\": \"u\" at character 5 is "
+              "not known; "
               "known are t, x, y, z, pi and functions such as sin, exp, sqrt");
 }
 
@@ -159,9 +168,11 @@ TEST(CaseErrors, MoreTetsThanAMachineHolds) {
     advised = replaced(advised, "far = 7e-4", fine.substr(far + 5, end - far - 5));
     SCOPED_TRACE(fine);
     EXPECT_EQ(refusal(advised), "");
-    EXPECT_GT(estimate_tets(parse_case(advised, "").domain), 0.5 * most_tets);  // and is not coarser than it must
+    EXPECT_GT(estimate_tets(parse_case(advised, "").domain),
+              0.5 * most_tets);  // and is not coarser than it must
 
-    EXPECT_NE(refusal(replaced(full_case, "surface = 3e-4", "surface = 1e-300")).find("would do"), std::string::npos);
+    EXPECT_NE(refusal(replaced(full_case, "surface = 3e-4", "surface = 1e-300")).find("would do"),
+              std::string::npos);
 }
 
 TEST(CaseErrors, FilesThatAreNotThere) {

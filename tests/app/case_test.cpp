@@ -47,7 +47,8 @@ void expect_same(const Case& a, const Case& b) {
     expect_same(a.domain.box.min, b.domain.box.min);
     expect_same(a.domain.box.max, b.domain.box.max);
     ASSERT_EQ(a.domain.bodies.size(), b.domain.bodies.size());
-    for (std::size_t i = 0; i < a.domain.bodies.size(); ++i) expect_same(a.domain.bodies[i], b.domain.bodies[i]);
+    for (std::size_t i = 0; i < a.domain.bodies.size(); ++i)
+        expect_same(a.domain.bodies[i], b.domain.bodies[i]);
     EXPECT_EQ(a.domain.size.surface, b.domain.size.surface);
     EXPECT_EQ(a.domain.size.growth, b.domain.size.growth);
     EXPECT_EQ(a.domain.size.far, b.domain.size.far);
@@ -87,8 +88,10 @@ TEST(ReadCase, EveryKeyArrives) {
 }
 
 TEST(ReadCase, WhatIsLeftOutHasItsDefault) {
-    const Case it = parse_case("[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[size]\nsurface = 0.1\nfar = 0.2\n"
-                               "[time]\nend = 1\nsteps = 2\n", "least.toml");
+    const Case it = parse_case(
+        "[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[size]\nsurface = 0.1\nfar = 0.2\n"
+        "[time]\nend = 1\nsteps = 2\n",
+        "least.toml");
     EXPECT_TRUE(it.domain.bodies.empty());
     EXPECT_FALSE(it.heat);
     EXPECT_EQ(it.domain.size.growth, 0.1);
@@ -146,19 +149,23 @@ TEST(Cases, TheTwoDropletsPassAtHalfARadius) {
 }
 
 TEST(Estimate, CountsWhatAUniformSizeGives) {
-    Domain domain{.box = {{0, 0, 0}, {1, 1, 2}}, .bodies = {}, .size = {.surface = 0.1, .growth = 0, .far = 0.1}};
-    EXPECT_NEAR(estimate_tets(domain), 2 * 6 * std::sqrt(2.0) / 1e-3, 1e-6);  // volume by that of a perfect tet
+    Domain domain{
+        .box = {{0, 0, 0}, {1, 1, 2}}, .bodies = {}, .size = {.surface = 0.1, .growth = 0, .far = 0.1}};
+    EXPECT_NEAR(estimate_tets(domain), 2 * 6 * std::sqrt(2.0) / 1e-3,
+                1e-6);  // volume by that of a perfect tet
 }
 
-// Whatever part of it the grid sees, the integral of 1/h^3 around a sphere is the one in closed form (far away the
-// size is so large that it does not count).
+// Whatever part of it the grid sees, the integral of 1/h^3 around a sphere is the one in closed form (far
+// away the size is so large that it does not count).
 TEST(Estimate, SeesSizesFinerThanItsGrid) {
     for (const double surface : {1e-2, 1e-3, 1e-4}) {
         SCOPED_TRACE(surface);
         const double radius = 0.2, growth = 0.5;
-        Domain domain{.box = {{-1, -1, -1}, {1, 1, 1}}, .bodies = {{"b", {{0, 0, 0}, {radius, radius, radius}, {}}}},
+        Domain domain{.box = {{-1, -1, -1}, {1, 1, 1}},
+                      .bodies = {{"b", {{0, 0, 0}, {radius, radius, radius}, {}}}},
                       .size = {.surface = surface, .growth = growth, .far = 10}};
-        double expected = 0;  // over shells of the ball of radius 1; the corners of the box add less than a percent
+        double expected =
+            0;  // over shells of the ball of radius 1; the corners of the box add less than a percent
         double inner = 0;
         for (int i = 1; i <= 2'000'000; ++i, inner += 5e-7) {
             const double r = inner + 2.5e-7;

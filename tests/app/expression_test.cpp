@@ -65,8 +65,9 @@ TEST(Expression, SaysWhereItIsWrong) {
     EXPECT_EQ(fault("1)"), "\"1)\": \")\" at character 2 is out of place");
     EXPECT_EQ(fault("2t"), "\"2t\": \"t\" at character 2 is out of place");
     EXPECT_EQ(fault("sin()"), "\"sin()\": too few arguments for \"sin\" at character 5");
-    EXPECT_EQ(fault("1 + y"), "\"1 + y\": \"y\" at character 5 is not known; known are t, pi and functions such as "
-                              "sin, exp, sqrt");
+    EXPECT_EQ(fault("1 + y"),
+              "\"1 + y\": \"y\" at character 5 is not known; known are t, pi and functions such as "
+              "sin, exp, sqrt");
     EXPECT_EQ(fault("1,2"), "\"1,2\": must be one formula, not 2");
     EXPECT_EQ(fault("t = 5"), "\"t = 5\": \"=\" at character 3 is out of place");
     EXPECT_EQ(fault("t == 5 ? 1 : t != 2"), "");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "folder.h"
+#include "temporary_folder.h"
 
 #include <string>
 #include <string_view>
@@ -15,7 +15,7 @@ struct Outcome {
 };
 
 /// `arguments` are the shell's; the program runs in `folder`, without a terminal.
-inline Outcome kropla_program(const Folder& folder, const std::string& arguments) {
+inline Outcome kropla_program(const TemporaryFolder& folder, const std::string& arguments) {
     const std::string command = "cd '" + folder.path.string() + "' && '" KROPLA_PROGRAM "' " + arguments +
                                 " >out.txt 2>err.txt </dev/null";
     const int status = std::system(command.c_str());

@@ -11,16 +11,25 @@
 namespace kropla {
 namespace {
 
-const ProgressRow row{.step = 12, .steps = 50, .time = 2.4e-3, .worst_aspect_ratio = 5.8, .rung = "swap",
-                      .touched_fraction = 0.073, .mesh_seconds = 0.08, .heat_seconds = 0.12, .seconds_left = 7.6};
+const ProgressRow row{.step = 12,
+                      .steps = 50,
+                      .time = 2.4e-3,
+                      .worst_aspect_ratio = 5.8,
+                      .rung = "swap",
+                      .touched_fraction = 0.073,
+                      .mesh_seconds = 0.08,
+                      .heat_seconds = 0.12,
+                      .seconds_left = 7.6};
 
 TEST(Progress, SaysWhatAStepDid) {
-    EXPECT_EQ(progress_line(row), "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
-                                  "heat  0.12 s  left 0:08");
+    EXPECT_EQ(progress_line(row),
+              "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
+              "heat  0.12 s  left 0:08");
     ProgressRow without = row;
     without.heat_seconds = {};
-    EXPECT_EQ(progress_line(without), "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
-                                      "left 0:08");
+    EXPECT_EQ(progress_line(without),
+              "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
+              "left 0:08");
 }
 
 TEST(Progress, ColumnsStandUnderEachOther) {
@@ -72,7 +81,8 @@ TEST(Progress, WritesPlainLinesIntoAFile) {
 
 TEST(Progress, WritesOverItsLineOnATerminal) {
     const int reader = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);  // a terminal of our own
-    if (reader < 0 || grantpt(reader) != 0 || unlockpt(reader) != 0) GTEST_SKIP() << "no pseudo-terminals here";
+    if (reader < 0 || grantpt(reader) != 0 || unlockpt(reader) != 0)
+        GTEST_SKIP() << "no pseudo-terminals here";
     std::FILE* terminal = std::fopen(ptsname(reader), "w");
     ASSERT_NE(terminal, nullptr);
     ProgressRow shorter = row;
@@ -82,8 +92,10 @@ TEST(Progress, WritesOverItsLineOnATerminal) {
         progress.show(row);
         progress.show(shorter);
     }
-    const std::string blanks(progress_line(row).size() - progress_line(shorter).size(), ' ');
-    EXPECT_EQ(drained(reader), "\r" + progress_line(row) + "\r" + progress_line(shorter) + blanks + "\r\n");
+    std::string expected("\r");
+    expected += progress_line(row) + "\r" + progress_line(shorter);
+    expected.append(progress_line(row).size() - progress_line(shorter).size(), ' ');
+    EXPECT_EQ(drained(reader), expected + "\r\n");
     std::fclose(terminal);
     close(reader);
 }

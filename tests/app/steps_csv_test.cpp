@@ -1,6 +1,6 @@
 #include "app/steps_csv.h"
 #include "base/error.h"
-#include "folder.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -37,12 +37,30 @@ TEST(StepsTable, HasNamesAndUnits) {
 TEST(StepsTable, RowsFitTheHeader) {
     const std::string header = csv_header(energy), line = csv_line(row_of(7));
     EXPECT_EQ(std::ranges::count(line, ','), std::ranges::count(header, ','));
-    const StepRow row = {  // 1, 2, 3, ... in the order of the header
-           .step = 1, .time = 2, .dt = 3, .attempts = 4, .vertices = 5, .tets = 6, .prisms = 7,
-           .max_aspect_ratio = 8, .p999_aspect_ratio = 9, .min_dihedral = 10, .max_dihedral = 11,
-           .smoothing_sweeps = 12, .swaps = 13, .splits = 14, .collapses = 15, .local_remeshes = 16,
-           .largest_ring = 17, .global_remeshes = 18, .touched_fraction = 19, .mesh_seconds = 20,
-           .simulate_seconds = 21, .transfer_seconds = 22, .fields = {{"energy", "J", 23, 24}}};
+    // 1, 2, 3, ... in the order of the header
+    const StepRow row = {.step = 1,
+                         .time = 2,
+                         .dt = 3,
+                         .attempts = 4,
+                         .vertices = 5,
+                         .tets = 6,
+                         .prisms = 7,
+                         .max_aspect_ratio = 8,
+                         .p999_aspect_ratio = 9,
+                         .min_dihedral = 10,
+                         .max_dihedral = 11,
+                         .smoothing_sweeps = 12,
+                         .swaps = 13,
+                         .splits = 14,
+                         .collapses = 15,
+                         .local_remeshes = 16,
+                         .largest_ring = 17,
+                         .global_remeshes = 18,
+                         .touched_fraction = 19,
+                         .mesh_seconds = 20,
+                         .simulate_seconds = 21,
+                         .transfer_seconds = 22,
+                         .fields = {{"energy", "J", 23, 24}}};
     EXPECT_EQ(csv_line(row), "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24");
 }
 
@@ -53,7 +71,7 @@ TEST(StepsTable, KeepsEveryBitOfANumber) {
 }
 
 TEST(StepsTable, EveryRowIsThereAtOnce) {
-    const Folder folder;
+    const TemporaryFolder folder;
     StepsTable table(folder.path / "steps.csv", energy);
     EXPECT_EQ(contents(folder.path / "steps.csv"), header_and_rows({}));
     table.append(row_of(1));
@@ -61,7 +79,7 @@ TEST(StepsTable, EveryRowIsThereAtOnce) {
 }
 
 TEST(StepsTable, GoesOnAfterTheStepOfTheCheckpoint) {
-    const Folder folder;
+    const TemporaryFolder folder;
     const auto file = folder.path / "steps.csv";
     write(file, header_and_rows({1, 2, 3}) + "4,1.33");  // the machine failed while it wrote step 4
     {
@@ -75,7 +93,7 @@ TEST(StepsTable, GoesOnAfterTheStepOfTheCheckpoint) {
 }
 
 TEST(StepsTable, RefusesToGoOnWhereItCannot) {
-    const Folder folder;
+    const TemporaryFolder folder;
     const auto file = folder.path / "steps.csv";
     EXPECT_THROW(StepsTable(file, energy, 2), FileError);  // no such file
     write(file, header_and_rows({1, 2}));

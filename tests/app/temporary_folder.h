@@ -10,17 +10,17 @@
 namespace kropla {
 
 /// An empty folder of a test's own, removed with all in it.
-struct Folder {
+struct TemporaryFolder {
     std::filesystem::path path;
 
-    Folder() {
+    TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "kropla-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
         path = name;
     }
-    ~Folder() { std::filesystem::remove_all(path); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
+    ~TemporaryFolder() { std::filesystem::remove_all(path); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 };
 
 inline std::string contents(const std::filesystem::path& file) {
