@@ -46,6 +46,10 @@ void smooth_laplacian(Mesh& mesh, std::span<const Vertex> vertices, const Laplac
 /// vertices that moved.
 std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights);
 
+/// One sweep that moves each vertex towards the volume-weighted barycentre of its ball, if the sum of the fourth powers
+/// of the aspect ratios of its ball falls: better cells on the whole, bad ones first. Returns those that moved.
+std::vector<Vertex> relax(Mesh& mesh, std::span<const Vertex> vertices);
+
 /// Moves `v` to where the worst aspect ratio of its ball is least, or as low as `good_enough`; slides on the faces of
 /// the box; stays on interfaces. Returns whether it moved: only if the worst ratio fell.
 bool optimise_vertex(Mesh& mesh, Vertex v, double good_enough);
@@ -73,10 +77,14 @@ inline constexpr int longest_ring = 9;
 // --- Improvement: operators chosen worst-first -------------------------------------------------------------------
 
 struct AdaptOptions {
-    double good_enough = 5.0;         // [-] R/r: cells at most this bad are left alone
+    double smooth_above = 4.2;        // [-] R/r: worse cells are smoothed as the mesh moves
+    int relaxations = 2;              // sweeps of relaxation along with it
+    double swap_above = 4.2;          // [-] R/r: worse cells are swapped away where that pays well
+    double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
+    double passing = 9.0;             // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
-    double split_above = 1.75;        // [target sizes] longer edges are split
-    double collapse_below = 0.5;      // [target sizes] shorter edges are collapsed
+    double split_above = 1.5;         // [target sizes] longer edges are split
+    double collapse_below = 0.6;      // [target sizes] shorter edges are collapsed
     int largest_ring = 6;             // rings of cells added to a cluster before the whole region is remeshed
     std::uint64_t seed = 1;           // of the new points of a cluster
 };
@@ -85,8 +93,8 @@ struct AdaptOptions {
 /// swap, else move a vertex, else collapse, else insert. Never makes the worst cell of a cavity worse.
 Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
-/// Splits and collapses edges of `cells` towards the target size; a cell is made worse than `good_enough` only if
-/// one of those it replaces was.
+/// Splits and collapses edges of `cells` towards the target size; a cell is made worse than `passing` only if one of
+/// those it replaces was. To be followed by `improve`.
 Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
 /// Moves vertices only (connectivity is unchanged): the paper's smoothing in both modes, guarded, then optimisation

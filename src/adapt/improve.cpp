@@ -13,6 +13,7 @@ namespace kropla {
 namespace {
 
 constexpr double least_gain = 1e-3;
+constexpr double swap_gain = 0.08;              // relative, of a swap where no cell is bad
 constexpr double longest_after_collapse = 2.0;  // [target sizes]
 constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
 
@@ -21,11 +22,11 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// The work list: bad cells, the worst first, ties by number.
 class BadCells {
 public:
-    BadCells(const Mesh& mesh, double good_enough) : mesh_(mesh), good_enough_(good_enough) {}
+    BadCells(const Mesh& mesh, double above) : mesh_(mesh), above_(above) {}
 
     void add(Tet t) {
         if (!alive(mesh_, t)) return;
-        if (const double ratio = aspect_ratio(mesh_, t); ratio > good_enough_) queue_.push({ratio, -t.value});
+        if (const double ratio = aspect_ratio(mesh_, t); ratio > above_) queue_.push({ratio, -t.value});
     }
     /// The worst cell, if one is left; entries whose cell has changed since are passed over.
     std::optional<Tet> take() {
@@ -40,7 +41,7 @@ public:
 
 private:
     const Mesh& mesh_;
-    double good_enough_;
+    double above_;
     std::priority_queue<std::pair<double, std::int32_t>> queue_;
 };
 
@@ -69,13 +70,15 @@ void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
 
 bool swap_at(Improvement& work, Tet t) {
     const Mesh& mesh = work.mesh;
+    const double ratio = aspect_ratio(mesh, t);
     std::optional<Cavity> best;
     for (int i = 0; i < 4; ++i) keep_better(best, face_removal(mesh, {t, i}));
     for (const auto& [i, j] : tet_edges) {
         const Edge e{mesh.tets[t][at(i)], mesh.tets[t][at(j)]};
         keep_better(best, edge_removal(mesh, shell(mesh, e, t), e));
     }
-    if (!best) return false;
+    const bool bad = ratio > work.options.good_enough;
+    if (!best || (!bad && best->worst_after > (1 - swap_gain) * best->worst_before)) return false;
     work.carry_out(*best);
     ++work.changes.swaps;
     return true;
@@ -151,17 +154,18 @@ Changes& Changes::operator+=(const Changes& other) {
 }
 
 Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
-    BadCells bad(mesh, options.good_enough);
+    BadCells bad(mesh, std::min(options.swap_above, options.good_enough));
     Improvement work{mesh, at_time, options, bad, {}};
     for (Tet t : cells) bad.add(t);
     for (int round = 0; round < most_rounds; ++round) {
         std::vector<Tet> stuck;
         bool progress = false;
         while (const auto t = bad.take()) {
-            if (swap_at(work, *t) || smooth_at(work, *t) || collapse_at(work, *t) || split_at(work, *t))
-                progress = true;
-            else
-                stuck.push_back(*t);
+            const bool bad_cell = aspect_ratio(mesh, *t) > options.good_enough;
+            if (swap_at(work, *t)) progress = true;
+            else if (!bad_cell) continue;
+            else if (smooth_at(work, *t) || collapse_at(work, *t) || split_at(work, *t)) progress = true;
+            else stuck.push_back(*t);
         }
         if (!progress || stuck.empty()) break;
         for (Tet t : stuck) bad.add(t);
@@ -169,29 +173,38 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time,
     return std::move(work.changes);
 }
 
-Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {
+namespace {
+
+/// The vertices of the cells worse than `above`, in order.
+std::vector<Vertex> vertices_of_worse(const Mesh& mesh, std::span<const Tet> cells, double above) {
     std::vector<Vertex> vertices;
     for (Tet t : cells)
-        if (aspect_ratio(mesh, t) > options.good_enough)
+        if (aspect_ratio(mesh, t) > above)
             vertices.insert(vertices.end(), mesh.tets[t].begin(), mesh.tets[t].end());
     std::ranges::sort(vertices);
     const auto repeated = std::ranges::unique(vertices);
     vertices.erase(repeated.begin(), repeated.end());
+    return vertices;
+}
 
+}  // namespace
+
+Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {
     Changes changes;
-    if (vertices.empty()) return changes;
-    for (const LaplaceWeights& weights : {LaplaceWeights{0, 1}, LaplaceWeights{1, 0}}) {
-        const auto moved = smooth_guarded(mesh, vertices, weights);
+    const auto note = [&](std::span<const Vertex> moved) {
         changes.vertices.insert(changes.vertices.end(), moved.begin(), moved.end());
         changes.moved += static_cast<int>(moved.size());
-        ++changes.smoothing_sweeps;
-    }
-    for (Vertex v : vertices)
-        if (optimise_vertex(mesh, v, 0.9 * options.good_enough)) {
-            changes.vertices.push_back(v);
-            ++changes.moved;
-        }
-    ++changes.smoothing_sweeps;
+        changes.smoothing_sweeps += moved.empty() ? 0 : 1;
+    };
+    const auto poor = vertices_of_worse(mesh, cells, options.smooth_above);
+    for (const LaplaceWeights& weights : {LaplaceWeights{0, 1}, LaplaceWeights{1, 0}})
+        note(smooth_guarded(mesh, poor, weights));
+    for (int sweep = 0; sweep < options.relaxations; ++sweep) note(relax(mesh, poor));
+
+    std::vector<Vertex> optimised;
+    for (Vertex v : vertices_of_worse(mesh, cells, options.good_enough))
+        if (optimise_vertex(mesh, v, 0.9 * options.good_enough)) optimised.push_back(v);
+    note(optimised);
     return changes;
 }
 

@@ -78,7 +78,7 @@ const Changes& MovingMesh::refine() {
     cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());
     changes += improve(current_, cells, at_time, options);
     before_ = current_;
-    note_touched(changes.cells);
+    note_touched(current_, changes.cells);
     return changes;
 }
 
@@ -87,7 +87,7 @@ void MovingMesh::move_boundary(double t) {
     double here = time_;
     for (statistics_.legs = 1; statistics_.legs <= most_legs; ++statistics_.legs) {
         auto report = kropla::move_boundary(current_, domain_, bodies_, here, t);
-        note_touched(report.cells);
+        note_touched(current_, report.cells);
         if (report.arrived) {
             stuck_.reset();
             return;
@@ -151,17 +151,18 @@ const Changes& MovingMesh::accept() {
     const Snapshot at_time = snapshot(domain_, time_);
     Changes& changes = statistics_.remeshed;
     changes = adapt_to_size(reference_, touched_, at_time, options_);
-    note_touched(changes.cells);
+    note_touched(reference_, changes.cells);
     changes += improve(reference_, touched_, at_time, options_);
-    note_touched(changes.cells);
+    note_touched(reference_, changes.cells);
     changes += repair(reference_, touched_, at_time, options_);
-    note_touched(changes.cells);
+    note_touched(reference_, changes.cells);
     statistics_.cells_touched = static_cast<int>(touched_.size());
     return changes;
 }
 
-void MovingMesh::note_touched(std::span<const Tet> cells) {
+void MovingMesh::note_touched(const Mesh& mesh, std::span<const Tet> cells) {
     touched_.insert(touched_.end(), cells.begin(), cells.end());
+    std::erase_if(touched_, [&](Tet t) { return !alive(mesh, t); });
     std::ranges::sort(touched_);
     const auto repeated = std::ranges::unique(touched_);
     touched_.erase(repeated.begin(), repeated.end());

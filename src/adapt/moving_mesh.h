@@ -60,7 +60,7 @@ public:
     const Changes& accept();
 
 private:
-    void note_touched(std::span<const Tet> cells);
+    void note_touched(const Mesh& mesh, std::span<const Tet> cells);
 
     Domain domain_;
     AdaptOptions options_;

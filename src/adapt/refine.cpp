@@ -139,7 +139,7 @@ std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, EdgeMeasure&
     std::optional<Cavity> best;
     for (const auto& [from, to] : {std::pair(e.a, e.b), std::pair(e.b, e.a)}) {
         auto cavity = edge_collapse(mesh, from, to, best ? best->worst_after : infinity);
-        if (!cavity || cavity->worst_after > std::max(o.good_enough, cavity->worst_before)) continue;
+        if (!cavity || cavity->worst_after > std::max(o.passing, cavity->worst_before)) continue;
         if (makes_long_edge(*cavity, to, measure, 0.95 * o.split_above)) continue;
         best = std::move(cavity);
     }
@@ -149,7 +149,7 @@ std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, EdgeMeasure&
 std::optional<Cavity> split(const Mesh& mesh, Edge e, const AdaptOptions& o) {
     const auto around = shell(mesh, e);
     if (!around) return std::nullopt;
-    return edge_split(mesh, *around, e, std::max(o.good_enough, worst_aspect_ratio(mesh, around->tets)));
+    return edge_split(mesh, *around, e, std::max(o.passing, worst_aspect_ratio(mesh, around->tets)));
 }
 
 void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
@@ -167,8 +167,10 @@ Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at
     for (Edge e : edges_of(mesh, cells))
         if (const double r = measure.ratio(e); r > options.split_above || r < options.collapse_below)
             wrong.push_back({e, r});
-    // The shortest first, then up to the longest: crowds are thinned before gaps are filled.
-    std::ranges::sort(wrong, {}, [](const SizedEdge& w) { return std::tuple(w.ratio, w.edge.a, w.edge.b); });
+    // Crowds are thinned before gaps are filled; the shortest and the longest edges come first.
+    std::ranges::sort(wrong, {}, [](const SizedEdge& w) {
+        return std::tuple(w.ratio > 1, w.ratio > 1 ? -w.ratio : w.ratio, w.edge.a, w.edge.b);
+    });
 
     for (const auto& [edge, found] : wrong) {
         if (!alive(mesh, edge.a) || !alive(mesh, edge.b) || measure.ratio(edge) != found) continue;

@@ -16,9 +16,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double active_share = 0.93;    // tets this near to the worst take part in choosing the direction
-constexpr double least_gain = 1e-3;      // relative; smaller steps do not pay
-constexpr int most_steps = 12;
-constexpr int most_halvings = 7;
+constexpr double least_gain = 1e-2;      // relative; smaller steps do not pay
+constexpr int most_steps = 8;
+constexpr int most_halvings = 4;
 
 Vec3 shortest_in_hull(std::span<const Vec3> gradients) {
     Vec3 p = gradients.front();
@@ -78,6 +78,16 @@ double worst_in_star(std::span<const StarFacet> star, const Vec3& x, double boun
         if (worst > bound) return worst;
     }
     return worst;
+}
+
+double energy_of_star(std::span<const StarFacet> star, const Vec3& x, double bound) {
+    double sum = 0;
+    for (const auto& [a, b, c] : star) {
+        const double ratio = tet_aspect_ratio(x, a, b, c);
+        sum += ratio * ratio * ratio * ratio;
+        if (sum > bound) return sum;
+    }
+    return sum;
 }
 
 Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freedom& f, double good_enough) {
