@@ -83,8 +83,8 @@ struct AdaptOptions {
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
     double passing = 9.0;             // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
-    double split_above = 1.5;         // [target sizes] longer edges are split
-    double collapse_below = 0.6;      // [target sizes] shorter edges are collapsed
+    double split_above = 1.6;         // [target sizes] longer edges are split
+    double collapse_below = 0.75;     // [target sizes] shorter edges are collapsed
     int largest_ring = 6;             // rings of cells added to a cluster before the whole region is remeshed
     std::uint64_t seed = 1;           // of the new points of a cluster
 };

@@ -1,0 +1,174 @@
+// A run: the initial mesh or the checkpoint, then step by step to the end; after each step what it leaves behind.
+
+#include "app/run.h"
+
+#include "app/case.h"
+#include "app/initial_mesh.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/run_output.h"
+#include "app/step.h"
+#include "base/error.h"
+#include "report/page.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+constexpr int path_samples_per_step = 8;   // a body may not slip through another between two looks
+constexpr double least_dt_share = 1e-3;    // of the wanted dt: below, the floors count as unreachable
+constexpr double same_time = 1e-9;         // of the wanted dt: what is left of a step is rounding
+
+AdaptOptions adapt_options(const Case& it) {
+    return {.floor = it.quality.max_aspect_ratio, .seed = it.random.seed};
+}
+
+State start(const Case& it) {
+    Mesh mesh = initial_mesh(it);
+    std::vector<NodalField> fields;
+    if (it.heat) {
+        check_heat(*it.heat, mesh);
+        fields.push_back(initial_temperature(mesh, *it.heat));
+    }
+    return {MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it)), std::move(fields)};
+}
+
+/// How far a run is.
+struct Place {
+    State state;
+    std::int64_t step = 0;
+    double next_dt;  // [s]
+};
+
+Place resume(const Case& it, const std::filesystem::path& folder) {
+    Checkpoint saved = read_checkpoint(folder / checkpoint_name);
+    if (saved.case_text != to_toml(it))
+        throw CaseError(fmt::format("{}: the run in it is of another case than the one given; its own is {}",
+                                    folder.string(), (folder / "case.toml").string()));
+    return {{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it)), std::move(saved.fields)},
+            saved.step, saved.next_dt};
+}
+
+Checkpoint checkpoint_of(const Place& place, const Case& it) {
+    return {.mesh = place.state.moving.reference(),
+            .fields = place.state.fields,
+            .time = place.state.moving.time(),
+            .next_dt = place.next_dt,
+            .step = place.step,
+            .case_text = to_toml(it),
+            .values = {}};
+}
+
+/// The way to the next of the wanted times, or as much of it as `next_dt` allows.
+double step_length(const Place& place, const TimePlan& plan) {
+    const double wanted = plan.end / plan.steps, t = place.state.moving.time();
+    const double target = wanted * (std::floor(t / wanted + same_time) + 1);
+    const double left = std::min(target, plan.end) - t;
+    return left > place.next_dt * (1 + same_time) ? place.next_dt : left;
+}
+
+class TimeLoop {
+public:
+    TimeLoop(const Case& it, const Ranks& ranks, Place place, RunOutput& output)
+        : it_(it), ranks_(ranks), place_(std::move(place)), output_(output) {}
+
+    /// Goes on to the end of the case. Returns false if it was interrupted.
+    bool run() {
+        const double wanted = it_.time.end / it_.time.steps;
+        while (place_.state.moving.time() < it_.time.end - same_time * wanted) {
+            if (interrupted(ranks_)) return false;
+            const auto begin = std::chrono::steady_clock::now();
+            const StepReport report =
+                time_step(place_.state, it_, ranks_, step_length(place_, it_.time), least_dt_share * wanted);
+            ++place_.step;
+            // A step that had to be cut is followed by one of that length, then twice it, up to the wanted one.
+            place_.next_dt = report.attempts > 1 ? report.dt : std::min(wanted, 2 * place_.next_dt);
+            write(report, begin);
+        }
+        return true;
+    }
+
+    [[nodiscard]] Checkpoint checkpoint() const { return checkpoint_of(place_, it_); }
+
+private:
+    void write(const StepReport& report, std::chrono::steady_clock::time_point begin) {
+        const bool last = report.time >= it_.time.end * (1 - same_time);
+        const State& state = place_.state;
+        output_.write_step(place_.step, report, state);
+        if (place_.step % it_.output.every == 0 || last) {
+            output_.write_frame(place_.step, state);
+            output_.write_checkpoint(checkpoint());
+        }
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        output_.show_progress(place_.step, report, seconds * (it_.time.end - report.time) / report.dt);
+    }
+
+    const Case& it_;
+    const Ranks& ranks_;
+    Place place_;
+    RunOutput& output_;
+};
+
+/// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint.
+int run_to_end(TimeLoop& loop, RunOutput& output) {
+    try {
+        if (loop.run()) return 0;
+    } catch (const FileError&) {
+        throw;  // the checkpoint could not be written either
+    } catch (const std::runtime_error&) {
+        output.write_checkpoint(loop.checkpoint());
+        throw;
+    }
+    output.write_checkpoint(loop.checkpoint());
+    output.say("interrupted: a checkpoint is written; go on with --resume");
+    return 130;
+}
+
+int run_with(const RunOptions& options, const Ranks& ranks) {
+    const Case it = read_case(options.case_file);
+    check_paths(it.domain, 0, it.time.end, path_samples_per_step * it.time.steps + 1);
+    const double wanted = it.time.end / it.time.steps;
+    Place place = options.resume ? resume(it, options.out) : Place{start(it), 0, wanted};
+    RunOutput output(options, it, ranks.rank == 0, place.step, place.state);
+    if (!options.resume) output.write_checkpoint(checkpoint_of(place, it));
+    TimeLoop loop(it, ranks, std::move(place), output);
+    const int code = run_to_end(loop, output);
+    if (ranks.rank == 0) write_report(options.out);
+    return code;
+}
+
+/// Only rank 0 speaks: the others meet the same errors, as they do the same.
+void silence(const Ranks& ranks) {
+    if (ranks.rank == 0) return;
+    if (std::freopen("/dev/null", "w", stdout) == nullptr || std::freopen("/dev/null", "w", stderr) == nullptr)
+        throw FileError("/dev/null cannot be opened");
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    const PetscSession petsc(options.solver_options);
+    const Ranks ranks = petsc.all_ranks();
+    silence(ranks);
+    using oneapi::tbb::global_control;
+    std::optional<global_control> threads;
+    if (options.threads > 0)
+        threads.emplace(global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+    const CatchInterrupts catching;
+    try {
+        return run_with(options, ranks);
+    } catch (const FileError& error) {
+        if (ranks.count == 1) throw;
+        // The other ranks write nothing and would wait for this one for ever.
+        fmt::print(stderr, "kropla: {}\n", error.what());
+        MPI_Abort(ranks.communicator, 5);
+        throw;
+    }
+}
+
+}  // namespace kropla

@@ -1,0 +1,114 @@
+#include "app/run_output.h"
+
+#include "base/error.h"
+#include "io/file.h"
+#include "io/vtk.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+std::string frame_name(std::int64_t step) { return fmt::format("frames/{:05}.vtu", step); }
+
+std::vector<FieldBalance> conserved(const Case& it) {
+    if (!it.heat) return {};
+    return {{"energy", "J", 0, 0}};
+}
+
+/// The highest rung of the repair ladder that was climbed.
+const char* rung(const Changes& c) {
+    if (c.global_remeshes > 0) return "region";
+    if (c.local_remeshes > 0) return "cluster";
+    if (c.splits + c.collapses > 0) return "refine";
+    if (c.swaps > 0) return "swap";
+    if (c.smoothing_sweeps > 0) return "smooth";
+    return "-";
+}
+
+}  // namespace
+
+RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state)
+    : folder_(options.out), it_(it), speak_(speak) {
+    if (!speak_) return;
+    if (options.resume) go_on(step);
+    else start(state);
+}
+
+void RunOutput::start(const State& state) {
+    std::filesystem::create_directories(folder_ / "frames");
+    write_file(folder_ / "case.toml", to_toml(it_));
+    table_.emplace(folder_ / "steps.csv", conserved(it_));
+    write_frame(0, state);
+}
+
+void RunOutput::go_on(std::int64_t step) {
+    table_.emplace(folder_ / "steps.csv", conserved(it_), static_cast<int>(step));
+    series_ = read_pvd(folder_ / "frames.pvd");
+    std::erase_if(series_, [&](const SeriesEntry& frame) { return frame.file > frame_name(step); });
+}
+
+void RunOutput::write_step(std::int64_t step, const StepReport& report, const State& state) {
+    if (!speak_) return;
+    const Changes& c = report.changes;
+    quality_ = summarise_quality(state.moving.reference());
+    StepRow row{.step = static_cast<int>(step), .time = report.time, .dt = report.dt, .attempts = report.attempts};
+    row.vertices = quality_->vertices;
+    row.tets = quality_->tets;
+    row.max_aspect_ratio = quality_->max_aspect_ratio;
+    row.p999_aspect_ratio = quality_->p999_aspect_ratio;
+    row.min_dihedral = quality_->min_dihedral;
+    row.max_dihedral = quality_->max_dihedral;
+    row.smoothing_sweeps = c.smoothing_sweeps;
+    row.swaps = c.swaps;
+    row.splits = c.splits;
+    row.collapses = c.collapses;
+    row.local_remeshes = c.local_remeshes;
+    row.largest_ring = c.largest_ring;
+    row.global_remeshes = c.global_remeshes;
+    row.touched_fraction = report.touched_fraction;
+    row.mesh_seconds = report.mesh_seconds;
+    row.simulate_seconds = report.simulate_seconds;
+    row.transfer_seconds = report.transfer_seconds;
+    row.fields = conserved(it_);
+    for (FieldBalance& field : row.fields) {
+        field.integral = report.energy;
+        field.transfer_error = report.energy_transfer_error;
+    }
+    table_->append(row);
+}
+
+void RunOutput::write_frame(std::int64_t step, const State& state) {
+    if (!speak_) return;
+    write_vtu(folder_ / frame_name(step), state.moving.reference(), state.fields);
+    series_.push_back({state.moving.time(), frame_name(step)});
+    write_pvd(folder_ / "frames.pvd", series_);
+}
+
+void RunOutput::write_checkpoint(const Checkpoint& checkpoint) {
+    if (speak_) kropla::write_checkpoint(folder_ / checkpoint_name, checkpoint);
+}
+
+void RunOutput::show_progress(std::int64_t step, const StepReport& report, double seconds_left) {
+    if (!speak_) return;
+    const double wanted = it_.time.end / it_.time.steps;
+    const auto steps_left = static_cast<std::int64_t>(std::ceil((it_.time.end - report.time) / wanted - 1e-6));
+    ProgressRow row{.step = static_cast<int>(step), .steps = static_cast<int>(step + steps_left)};
+    row.time = report.time;
+    row.worst_aspect_ratio = quality_->max_aspect_ratio;
+    row.rung = rung(report.changes);
+    row.touched_fraction = report.touched_fraction;
+    row.mesh_seconds = report.mesh_seconds;
+    if (it_.heat) row.heat_seconds = report.simulate_seconds;
+    row.seconds_left = seconds_left;
+    progress_.show(row);
+}
+
+void RunOutput::say(const char* line) {
+    progress_.finish();
+    if (speak_) fmt::print("{}\n", line);
+}
+
+}  // namespace kropla

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "app/progress.h"
+#include "app/run.h"
+#include "app/step.h"
+#include "app/steps_csv.h"
+#include "io/checkpoint.h"
+#include "io/pvd.h"
+#include "mesh/quality.h"
+
+#include <optional>
+#include <vector>
+
+namespace kropla {
+
+inline constexpr const char* checkpoint_name = "checkpoint.h5";
+
+/// What a run leaves in its folder (design.md, part 6) and says on the way. On ranks that do not `speak`, nothing.
+class RunOutput {
+public:
+    /// Starts the folder with the case and the first frame, or continues it after `step`; later frames and rows,
+    /// which a run that was ended left behind its checkpoint, are dropped. Throws FileError.
+    RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state);
+
+    void write_step(std::int64_t step, const StepReport& report, const State& state);
+    void write_frame(std::int64_t step, const State& state);
+    void write_checkpoint(const Checkpoint& checkpoint);
+    void show_progress(std::int64_t step, const StepReport& report, double seconds_left);
+    void say(const char* line);
+
+private:
+    void start(const State& state);
+    void go_on(std::int64_t step);
+
+    std::filesystem::path folder_;
+    const Case& it_;
+    bool speak_;
+    std::vector<SeriesEntry> series_;
+    std::optional<StepsTable> table_;
+    std::optional<QualitySummary> quality_;  // after the last step
+    Progress progress_;
+};
+
+}  // namespace kropla

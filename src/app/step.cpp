@@ -1,0 +1,113 @@
+// One time step: the list of the paper's section 1, in its order.
+
+#include "app/step.h"
+
+#include "base/error.h"
+#include "mesh/quality.h"
+#include "transfer/transfer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace kropla {
+namespace {
+
+/// Adds the time from its construction to its end to a sum.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+    ~Stopwatch() {
+        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void carry_fields(std::vector<NodalField>& fields, const Mesh& before, const Mesh& after,
+                  std::span<const Vertex> changed, StepReport& report) {
+    const Stopwatch watch(report.transfer_seconds);
+    if (fields.empty()) return;
+    const auto plan = interpolations(before, after, changed);
+    for (NodalField& field : fields) field.values = carry(field.values, after, plan);
+}
+
+/// Stages 2.1 to 2.4: the current mesh and the fields on its beginning; the reference is not touched.
+void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, StepReport& report) {
+    std::span<const Vertex> changed;
+    {
+        const Stopwatch watch(report.mesh_seconds);
+        moving.begin_step();                   // 2.1
+        changed = moving.refine().vertices;    // 2.2
+    }
+    if (!changed.empty()) carry_fields(fields, moving.reference(), moving.before(), changed, report);
+    const Stopwatch watch(report.mesh_seconds);
+    moving.move_boundary(t);                   // 2.3
+    moving.optimise();                         // 2.4
+}
+
+/// Stage 2.5.
+void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, const Ranks& ranks, double dt,
+              StepReport& report) {
+    const Stopwatch watch(report.simulate_seconds);
+    if (it.heat)
+        step_heat(ranks, moving.before(), moving.current(), *it.heat, fields.front(), moving.time(), dt);
+}
+
+/// Stage 2.6.
+void accept(State& state, std::vector<NodalField> fields, const Case& it, StepReport& report) {
+    MovingMesh& moving = state.moving;
+    std::span<const Vertex> changed;
+    {
+        const Stopwatch watch(report.mesh_seconds);
+        changed = moving.accept().vertices;
+    }
+    const double before = it.heat ? energy(moving.before(), *it.heat, fields.front().values) : 0;
+    carry_fields(fields, moving.before(), moving.reference(), changed, report);
+    state.fields = std::move(fields);
+    if (!it.heat) return;
+    report.energy = energy(moving.reference(), *it.heat, state.fields.front().values);
+    report.energy_transfer_error = before != 0 ? (report.energy - before) / std::abs(before) : 0;
+}
+
+Changes all_changes(const StepStatistics& s) {
+    Changes all = s.refined;
+    all += s.optimised;
+    all += s.remeshed;
+    return all;
+}
+
+}  // namespace
+
+StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt, double least_dt) {
+    MovingMesh& moving = state.moving;
+    const double start = moving.time();
+    StepReport report;
+    for (report.attempts = 1;; ++report.attempts) {
+        std::vector<NodalField> fields = state.fields;
+        prepare(moving, fields, start + dt, report);
+        if (const auto refusal = moving.refusal()) {
+            moving.refuse();
+            report.refused = refusal->why;
+            if (report.attempts > 1) dt /= 2;
+            if (dt >= least_dt) continue;
+            throw FloorError(fmt::format("at t = {:.6g} s the mesh cannot go on, even by {:.2g} s: {}", start, 2 * dt,
+                                         refusal->why));
+        }
+        simulate(moving, fields, it, ranks, dt, report);
+        accept(state, std::move(fields), it, report);
+        break;
+    }
+    report.time = moving.time();
+    report.dt = dt;
+    report.changes = all_changes(moving.statistics());
+    report.touched_fraction =
+        static_cast<double>(moving.statistics().cells_touched) / static_cast<double>(count_tets(moving.reference()));
+    return report;
+}
+
+}  // namespace kropla
