@@ -6,10 +6,12 @@
 #include "adapt/adapt.h"
 #include "base/random.h"
 #include "generate/generate.h"
+#include "generate/sampling.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <unordered_map>
@@ -43,11 +45,12 @@ struct Cluster {
     [[nodiscard]] bool contains(Tet t) const { return has[at(t.value)] != 0; }
 };
 
-/// The cluster as a problem of its own: the facets that stay, by numbers of its own for their vertices.
+/// The cluster as a problem of its own, by numbers of its own for the vertices of its boundary.
 struct Hole {
     std::vector<Vertex> vertices;                   // of the boundary, by number
-    std::vector<std::array<int, 3>> facets;         // counter-clockwise from outside
+    std::vector<std::array<int, 3>> facets;         // all of the boundary, counter-clockwise from outside
     std::vector<Facet> facets_in_mesh;
+    std::vector<char> stays;                        // per facet; those on faces of the box may be exchanged
     std::vector<Vec3> points;                       // of the vertices, then new ones
 };
 
@@ -70,6 +73,7 @@ Hole boundary_of(const Mesh& mesh, const Cluster& cluster) {
             }
             hole.facets.push_back(facet);
             hole.facets_in_mesh.push_back({t, i});
+            hole.stays.push_back(n.exists() || mesh.patch[t][at(i)].value >= box_faces);
         }
     return hole;
 }
@@ -86,9 +90,9 @@ double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const V
 }
 
 /// Is there room for a new point at `x`: nothing nearer than the target spacing, no boundary facet too close?
-bool has_room(const Hole& hole, const Vec3& x, double size) {
-    for (const Vec3& p : hole.points)
-        if (squared_norm(p - x) < spacing_in_sizes * spacing_in_sizes * size * size) return false;
+bool has_room(const Hole& hole, const PointGrid& taken, const Vec3& x, double size) {
+    const double spacing = spacing_in_sizes * size;
+    if (taken.any_within(x, spacing, 0, std::numeric_limits<double>::infinity())) return false;
     return std::ranges::all_of(hole.facets, [&](const std::array<int, 3>& f) {
         return distance_to_triangle(x, hole.points[at(f[0])], hole.points[at(f[1])], hole.points[at(f[2])]) >=
                clearance_in_sizes * size;
@@ -108,13 +112,18 @@ Vec3 random_place(const Mesh& mesh, Tet t, Random& random) {
 }
 
 void fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& at_time, Random& random, Hole& hole) {
+    PointGrid taken;
+    for (const Vec3& p : hole.points) taken.insert(p, target_size(at_time, p));
     for (Tet t : cluster.cells) {
         const double size = target_size(at_time, centroid(mesh, t));
         const double fitting = volume(mesh, t) / (std::pow(spacing_in_sizes * size, 3) / std::numbers::sqrt2);
         const int tries = 1 + static_cast<int>(std::ceil(tries_per_point * fitting));
         for (int i = 0; i < tries; ++i) {
             const Vec3 x = random_place(mesh, t, random);
-            if (has_room(hole, x, target_size(at_time, x))) hole.points.push_back(x);
+            const double here = target_size(at_time, x);
+            if (!has_room(hole, taken, x, here)) continue;
+            hole.points.push_back(x);
+            taken.insert(x, here);
         }
     }
 }
@@ -124,44 +133,71 @@ std::array<int, 3> rotated_to_least(std::array<int, 3> f) {
     return f;
 }
 
-/// The Delaunay tets inside the hole; `missing` are the facets that are not facets of the triangulation.
+/// The Delaunay tets inside the hole; `missing` are the facets that should stay but are none of the triangulation.
 struct Filling {
     std::vector<std::array<Vertex, 4>> tets;
+    std::vector<BoundaryFacet> on_box;  // the facets inside which the hole is bounded by the box
     std::vector<std::size_t> missing;
-    bool closed = true;  // the tets inside are bounded by the facets
+    bool closed = true;  // the tets inside are bounded by the facets that stay and the box
 };
 
-Filling fill_hole(const Hole& hole) {
-    const Triangulation all = triangulate(hole.points);
-    std::map<std::array<int, 3>, Facet> seen;  // oriented facets of all tets
+/// The face of the box in which the facet lies, if it does.
+Patch face_of_box(const Box& box, const Vec3& a, const Vec3& b, const Vec3& c) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double plane : {box.min[axis], box.max[axis]})
+            if (a[axis] == plane && b[axis] == plane && c[axis] == plane)
+                return Patch(2 * axis + (plane == box.max[axis] ? 1 : 0));
+    return Patch{};
+}
+
+/// The oriented facets of all tets, to be looked up by their vertices.
+std::map<std::array<int, 3>, Facet> facets_by_vertices(const Triangulation& all) {
+    std::map<std::array<int, 3>, Facet> seen;
     for (Tet t : all.tets.indices())
         for (int i = 0; i < 4; ++i) {
             const auto& c = tet_facets[at(i)];
             const auto& v = all.tets[t];
             seen[rotated_to_least({v[at(c[0])].value, v[at(c[1])].value, v[at(c[2])].value})] = {t, i};
         }
+    return seen;
+}
+
+Filling fill_hole(const Hole& hole, const Box& box) {
+    const Triangulation all = triangulate(hole.points);
+    const auto seen = facets_by_vertices(all);
     Filling filling;
     std::vector<char> inside(all.tets.size(), 0), barred(4 * all.tets.size(), 0);
     std::vector<Tet> reached;
+    const auto reach = [&](Tet t) {
+        if (std::exchange(inside[at(t.value)], 1) == 0) reached.push_back(t);
+    };
     for (std::size_t f = 0; f < hole.facets.size(); ++f) {
+        if (hole.stays[f] == 0) continue;
         const auto found = seen.find(rotated_to_least(hole.facets[f]));
         if (found == seen.end()) {
             filling.missing.push_back(f);
             continue;
         }
-        const auto [t, corner] = found->second;
-        barred[4 * at(t.value) + at(corner)] = 1;
-        if (std::exchange(inside[at(t.value)], 1) == 0) reached.push_back(t);
+        barred[4 * at(found->second.tet.value) + at(found->second.corner)] = 1;
+        reach(found->second.tet);
     }
     if (!filling.missing.empty()) return filling;
+    if (reached.empty() && !all.tets.empty()) reach(Tet{0});  // the whole box
     for (std::size_t i = 0; i < reached.size(); ++i) {
         const Tet t = reached[i];
         filling.tets.push_back(all.tets[t]);
         for (int corner = 0; corner < 4; ++corner) {
             if (barred[4 * at(t.value) + at(corner)] != 0) continue;
-            const Tet n = all.neighbour[t][at(corner)];
-            if (!n.exists()) filling.closed = false;
-            else if (std::exchange(inside[at(n.value)], 1) == 0) reached.push_back(n);
+            if (const Tet n = all.neighbour[t][at(corner)]; n.exists()) {
+                reach(n);
+                continue;
+            }
+            std::array<Vertex, 3> v{};
+            for (std::size_t k = 0; k < 3; ++k) v[k] = all.tets[t][at(tet_facets[at(corner)][k])];
+            const auto place = [&](std::size_t k) { return hole.points[at(v[k].value)]; };
+            const Patch face = face_of_box(box, place(0), place(1), place(2));
+            filling.closed &= face.exists();
+            filling.on_box.push_back({v, face});
         }
     }
     return filling;
@@ -181,15 +217,18 @@ bool grow_across(const Mesh& mesh, const Hole& hole, std::span<const std::size_t
     return grown;
 }
 
-/// The filled hole as a mesh of its own, improved with its boundary frozen.
+/// The filled hole as a mesh of its own, improved with the facets that stay frozen.
 Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& at_time, const AdaptOptions& options) {
     Array<Vertex, Vec3> position;
     for (const Vec3& x : hole.points) position.push_back(x);
     Array<Tet, std::array<Vertex, 4>> tets;
     for (const auto& t : filling.tets) tets.push_back(t);
     Array<Tet, Region> region(tets.size(), surroundings);
-    std::vector<BoundaryFacet> boundary;
-    for (const auto& f : hole.facets) boundary.push_back({{Vertex(f[0]), Vertex(f[1]), Vertex(f[2])}, frozen});
+    std::vector<BoundaryFacet> boundary = filling.on_box;
+    for (std::size_t i = 0; i < hole.facets.size(); ++i) {
+        const auto& f = hole.facets[i];
+        if (hole.stays[i] != 0) boundary.push_back({{Vertex(f[0]), Vertex(f[1]), Vertex(f[2])}, frozen});
+    }
     Mesh mesh = make_mesh(std::move(position), std::move(tets), std::move(region), boundary);
     std::vector<Tet> cells;
     for (Tet t : mesh.tets.indices()) cells.push_back(t);
@@ -214,7 +253,10 @@ Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, con
         if (!alive(filled, t)) continue;
         auto v = filled.tets[t];
         for (auto& corner : v) corner = name[corner];
-        cavity.added.push_back({v, mesh.region[cluster.cells.front()]});
+        auto patch = filled.patch[t];
+        for (Patch& p : patch)
+            if (p == frozen) p = Patch{};
+        cavity.added.push_back({v, mesh.region[cluster.cells.front()], patch});
         cavity.worst_after = std::max(cavity.worst_after, aspect_ratio(filled, t));
     }
     return cavity;
@@ -229,7 +271,7 @@ std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, co
     for (int growth = 0; growth < most_growths; ++growth) {
         Hole hole = boundary_of(mesh, cluster);
         fill_with_points(mesh, cluster, at_time, random, hole);
-        const Filling filling = fill_hole(hole);
+        const Filling filling = fill_hole(hole, at_time.box);
         if (!filling.missing.empty()) {
             if (!grow_across(mesh, hole, filling.missing, cluster)) return std::nullopt;
             continue;
