@@ -136,6 +136,7 @@ void insert_vertices(Mesh& mesh, const std::vector<Vec3>& places, std::vector<Ve
         if (mesh.free_vertices.empty()) {
             mesh.position.push_back(place);
             mesh.tet_at.push_back(Tet{});
+            mesh.layer_at.push_back(Layer{});
         } else {
             mesh.position[mesh.free_vertices.back()] = place;
             mesh.free_vertices.pop_back();

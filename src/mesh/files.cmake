@@ -2,6 +2,7 @@ list(APPEND KROPLA_MESH_FILES
     mesh/mesh.cpp
     mesh/topology.cpp
     mesh/cavity.cpp
+    mesh/prisms.cpp
     mesh/quality.cpp
     mesh/verify.cpp
 )

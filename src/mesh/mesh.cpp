@@ -113,6 +113,7 @@ Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> t
     mesh.neighbour.resize(mesh.tets.size());
     mesh.patch.resize(mesh.tets.size());
     mesh.tet_at.resize(mesh.position.size());
+    mesh.layer_at.resize(mesh.position.size());
     find_neighbours(mesh, boundary);
     for (Tet t : mesh.tets.indices())
         for (Vertex v : mesh.tets[t]) mesh.tet_at[v] = t;
@@ -144,7 +145,14 @@ Compacted compact(const Mesh& mesh) {
         result.mesh.patch.push_back(mesh.patch[t]);
         result.mesh.region.push_back(mesh.region[t]);
     }
-    for (Vertex v : result.old_vertex) result.mesh.tet_at.push_back(new_tet[mesh.tet_at[v]]);
+    for (Vertex v : result.old_vertex) {
+        const Tet t = mesh.tet_at[v];
+        result.mesh.tet_at.push_back(t.exists() ? new_tet[t] : Tet{});
+        result.mesh.layer_at.push_back(mesh.layer_at[v]);
+    }
+    result.mesh.layers = mesh.layers;
+    for (PrismLayer& layer : result.mesh.layers)
+        for (Vertex& v : layer.columns) v = new_vertex[v];
     return result;
 }
 

@@ -13,32 +13,50 @@ using Vertex = Index<struct VertexTag>;
 using Tet = Index<struct TetTag>;
 using Region = Index<struct RegionTag>;  ///< a part of the volume: 0 the surroundings, 1, 2, ... the bodies
 using Patch = Index<struct PatchTag>;    ///< a part of the boundary: 0 ... 5 the faces of the box; up to 31
+using Layer = Index<struct LayerTag>;    ///< a prism layer: its place in Mesh::layers
 
 /// Patches below this are plane, x min, x max, y min, ... z max: facets on them may be exchanged for others
 /// in the same plane. Facets of all other patches are to stay as they are.
 inline constexpr int box_faces = 6;
 inline constexpr Region surroundings{0};
 
-/// A tetrahedral mesh as a value: copy it to keep it. Its invariant is `verify`; `replace_cells` is the only
+/// Prisms in stacks on one side of a body's surface: a triangulated wall and, for each of its vertices, a column of
+/// `count` + 1 vertices from the wall to the shell. Prism (triangle, k) is implied: cells.h draws it. The tets see a
+/// layer as two patches of their boundary, its wall and its shell (prisms.h).
+struct PrismLayer {
+    Region region;  // of the prisms: the surroundings, or the body for a layer inside it
+    Region body;    // on whose surface it stands
+    int count = 0;  // prisms per column
+    std::vector<std::array<int, 3>> triangles;  // columns; counter-clockwise seen from the shell
+    std::vector<Vertex> columns;                // count + 1 per column, the wall's vertex first
+
+    bool operator==(const PrismLayer&) const = default;
+};
+
+/// A mesh of tetrahedra and of layers of prisms, as a value: copy it to keep it. Its invariant is `verify`; `replace_cells` is the only
 /// function that changes its connectivity. Interfaces are where regions differ; nothing else records them.
 ///
 /// Removed cells and vertices leave free slots, which later ones take, so that nothing else is renumbered:
 /// pass over them with `alive`.
 struct Mesh {
     Array<Vertex, Vec3> position;              // [m]
-    Array<Vertex, Tet> tet_at;                 // one tet of its ball, where a query starts; none: free slot
+    Array<Vertex, Tet> tet_at;                 // one tet of its ball, where a query starts, if it has one
+    Array<Vertex, Layer> layer_at;             // the layer (the first, if two) that has it in a column, if one has
     Array<Tet, std::array<Vertex, 4>> tets;    // det(v1-v0, v2-v0, v3-v0) > 0; a free slot has no vertices
     Array<Tet, std::array<Tet, 4>> neighbour;  // across the facet opposite corner i, or none
     Array<Tet, std::array<Patch, 4>> patch;    // boundary patch of that facet, where there is no neighbour
     Array<Tet, Region> region;
     std::vector<Tet> free_tets;
-    std::vector<Vertex> free_vertices;
+    std::vector<Vertex> free_vertices;         // slots of neither a tet nor a layer
+    std::vector<PrismLayer> layers;
 
     bool operator==(const Mesh&) const = default;
 };
 
 [[nodiscard]] inline bool alive(const Mesh& mesh, Tet t) { return mesh.tets[t][0].exists(); }
-[[nodiscard]] inline bool alive(const Mesh& mesh, Vertex v) { return mesh.tet_at[v].exists(); }
+[[nodiscard]] inline bool alive(const Mesh& mesh, Vertex v) {
+    return mesh.tet_at[v].exists() || mesh.layer_at[v].exists();
+}
 
 [[nodiscard]] inline int count_tets(const Mesh& mesh) {
     return static_cast<int>(mesh.tets.size() - mesh.free_tets.size());
