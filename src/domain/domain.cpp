@@ -8,11 +8,20 @@
 
 namespace kropla {
 
+double thickness(const LayerOptions& layer) {
+    double sum = 0, height = layer.first_height;
+    for (int k = 0; k < layer.count; ++k, height *= layer.growth) sum += height;
+    return sum;
+}
+
 Shape shape_at(const Body& body, double t) { return placed(body.shape, body.motion(t)); }
 
 Snapshot snapshot(const Domain& domain, double t) {
     Snapshot at{domain.box, domain.size, {}};
-    for (const Body& body : domain.bodies) at.shapes.push_back(shape_at(body, t));
+    for (const Body& body : domain.bodies) {
+        at.shapes.push_back(shape_at(body, t));
+        at.layers.push_back(body.layer);
+    }
     return at;
 }
 

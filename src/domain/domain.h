@@ -4,6 +4,7 @@
 #include "mesh/mesh.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,35 @@ struct Box {
 /// Where a body is at time t [s].
 using Motion = std::function<Pose(double t)>;
 
+/// The prism layer asked for at a body's surface: column heights first_height * growth^k, k = 0 ... count - 1.
+struct LayerOptions {
+    enum class Side { outside, inside, both };  // in the surroundings, in the body, or a layer each
+
+    int count = 4;               // prisms per column, at least 1
+    double first_height = 2e-5;  // [m] of the prism at the wall, positive
+    double growth = 1.3;         // [-] from one prism of a column to the next, positive
+    Side side = Side::outside;
+    std::optional<double> min_gap = {};  // [m] least distance from the body to a wall or to another body at which
+                                         //   the layer is kept; none: first_height
+};
+
+/// The height of an unsqueezed column [m]; may be infinite.
+[[nodiscard]] double thickness(const LayerOptions& layer);
+[[nodiscard]] inline double least_gap(const LayerOptions& layer) {
+    return layer.min_gap.value_or(layer.first_height);
+}
+[[nodiscard]] inline bool has_outside(const LayerOptions& layer) {
+    return layer.side != LayerOptions::Side::inside;
+}
+[[nodiscard]] inline bool has_inside(const LayerOptions& layer) {
+    return layer.side != LayerOptions::Side::outside;
+}
+
 struct Body {
     std::string name;
     Shape shape;                                     // at t = 0 with the motion's displacement not yet applied
     Motion motion = [](double) { return Pose{}; };
+    std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
 };
 
 /// The target edge length at distance R from the nearest body: min(far, surface + growth * R).
@@ -47,6 +73,7 @@ struct Snapshot {
     Box box;
     SizeField size;
     std::vector<Shape> shapes;
+    std::vector<std::optional<LayerOptions>> layers = {};  // per body
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
 
