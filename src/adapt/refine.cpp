@@ -46,7 +46,7 @@ std::optional<Cavity> edge_collapse(const Mesh& mesh, Vertex from, Vertex to, do
     for (Tet t : cavity.removed) {
         if (corner_of(mesh, t, to) >= 0) continue;
         cavity.worst_after = std::max(cavity.worst_after, aspect_ratio_of(mesh, with_replaced(mesh, t, from, to)));
-        if (cavity.worst_after > worst_allowed) return std::nullopt;
+        if (cavity.worst_after > worst_allowed || cavity.worst_after == infinity) return std::nullopt;
     }
     for (Tet t : cavity.removed)
         if (corner_of(mesh, t, to) < 0)

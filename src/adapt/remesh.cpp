@@ -242,9 +242,12 @@ Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, con
     cavity.worst_before = worst_aspect_ratio(mesh, cluster.cells);
     Array<Vertex, Vertex> name(filled.position.size());
     for (Vertex v : filled.position.indices()) {
-        if (at(v.value) < hole.vertices.size()) {
+        if (!alive(filled, v)) continue;
+        // A vertex of a face of the box that has slid on it comes as a new one: no cell outside had the old one.
+        const bool known = at(v.value) < hole.vertices.size();
+        if (known && filled.position[v] == hole.points[at(v.value)]) {
             name[v] = hole.vertices[at(v.value)];
-        } else if (alive(filled, v)) {
+        } else {
             name[v] = next_vertex(mesh, cavity.inserted.size());
             cavity.inserted.push_back(filled.position[v]);
         }

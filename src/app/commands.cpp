@@ -5,7 +5,6 @@
 #include "app/initial_mesh.h"
 #include "app/new_case.h"
 #include "app/run.h"
-#include "app/run_folder.h"
 #include "base/error.h"
 #include "io/vtk.h"
 #include "mesh/quality.h"
@@ -22,16 +21,9 @@
 namespace kropla {
 namespace {
 
-constexpr int path_samples_per_step = 8;  // a body may not slip through another between two looks
-
 struct MeshOptions {
     std::filesystem::path case_file, out;
 };
-
-int run_case(const RunOptions& options) {
-    check_run_folder(options);
-    return run(options);
-}
 
 int write_initial_mesh(const MeshOptions& options) {
     if (options.out.extension() != ".vtu") {
@@ -39,7 +31,7 @@ int write_initial_mesh(const MeshOptions& options) {
                                     options.out.string()));
     }
     const Case it = read_case(options.case_file);
-    check_paths(it.domain, 0, it.time.end, path_samples_per_step * it.time.steps + 1);
+    check_all_paths(it);
     const Mesh mesh = initial_mesh(it);
     write_vtu(options.out, mesh);
     const QualitySummary quality = summarise_quality(mesh);
@@ -129,7 +121,7 @@ void describe(CLI::App& app, Request& request) {
 }
 
 int dispatch(const CLI::App& app, const Request& request) {
-    if (app.got_subcommand("run")) return run_case(request.run);
+    if (app.got_subcommand("run")) return run(request.run);
     if (app.got_subcommand("mesh")) return write_initial_mesh(request.mesh);
     if (app.got_subcommand("check")) return check_mesh(request.file);
     if (app.got_subcommand("report")) return report_run(request.file);

@@ -1,31 +1,36 @@
 #include "app/initial_mesh.h"
 
-#include "adapt/adapt.h"
 #include "base/error.h"
 #include "generate/generate.h"
 #include "mesh/quality.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace kropla {
 namespace {
 
-std::vector<Tet> all_cells(const Mesh& mesh) {
-    std::vector<Tet> cells;
-    for (const Tet t : mesh.tets.indices()) {
-        if (alive(mesh, t)) cells.push_back(t);
-    }
-    return cells;
-}
+constexpr int path_samples_per_step = 8;  // a body may not slip through another between two looks
 
 }  // namespace
 
+AdaptOptions adapt_options(const Case& it) {
+    const double floor = it.quality.max_aspect_ratio;
+    // What is changed after a step has been accepted may not pass the floor either.
+    return {.passing = std::min(AdaptOptions{}.passing, floor), .floor = floor, .seed = it.random.seed};
+}
+
+void check_all_paths(const Case& it) {
+    check_paths(it.domain, 0, it.time.end, path_samples_per_step * it.time.steps + 1);
+}
+
 Mesh initial_mesh(const Case& it) {
-    const AdaptOptions options{.floor = it.quality.max_aspect_ratio, .seed = it.random.seed};
+    const AdaptOptions options = adapt_options(it);
     const Snapshot at = snapshot(it.domain, 0);
     Mesh mesh = generate_mesh(it.domain, it.random.seed);
-    improve(mesh, all_cells(mesh), at, options);
-    repair(mesh, all_cells(mesh), at, options);
+    improve(mesh, all_tets(mesh), at, options);
+    repair(mesh, all_tets(mesh), at, options);
     const QualitySummary quality = summarise_quality(mesh);
     if (quality.max_aspect_ratio <= it.quality.max_aspect_ratio) return compact(mesh).mesh;
     const Vec3 place = centroid(mesh, quality.worst);

@@ -9,12 +9,12 @@
 #include <utility>
 
 #include <sys/ioctl.h>
-#include <unistd.h>
 
 namespace kropla {
 namespace {
 
-/// Characters on a line of the terminal; 0 if it does not tell.
+/// Characters on a line of the terminal; 0 if it does not tell or is none. mpirun gives its first process one
+/// of no width, whatever its own output goes to.
 std::size_t columns(std::FILE* out) {
     winsize size{};
     return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
@@ -50,7 +50,7 @@ std::string progress_line(const ProgressRow& row) {
         100 * row.touched_fraction, row.mesh_seconds, heat, clock_time(row.seconds_left));
 }
 
-Progress::Progress(std::FILE* out) : out_(out), terminal_(isatty(fileno(out)) != 0) {}
+Progress::Progress(std::FILE* out) : out_(out), terminal_(columns(out) > 0) {}
 Progress::~Progress() { finish(); }
 
 void Progress::show(const ProgressRow& row) {

@@ -1,11 +1,11 @@
-// A run: the initial mesh or the checkpoint, then step by step to the end; after each step what it leaves behind.
+// A run: from the initial mesh or the checkpoint to the end, step by step, with what each step leaves behind.
 
 #include "app/run.h"
 
 #include "app/case.h"
 #include "app/initial_mesh.h"
 #include "app/interrupt.h"
-#include "app/progress.h"
+#include "app/run_folder.h"
 #include "app/run_output.h"
 #include "app/step.h"
 #include "base/error.h"
@@ -20,13 +20,8 @@
 namespace kropla {
 namespace {
 
-constexpr int path_samples_per_step = 8;   // a body may not slip through another between two looks
 constexpr double least_dt_share = 1e-3;    // of the wanted dt: below, the floors count as unreachable
 constexpr double same_time = 1e-9;         // of the wanted dt: what is left of a step is rounding
-
-AdaptOptions adapt_options(const Case& it) {
-    return {.floor = it.quality.max_aspect_ratio, .seed = it.random.seed};
-}
 
 State start(const Case& it) {
     Mesh mesh = initial_mesh(it);
@@ -50,8 +45,10 @@ Place resume(const Case& it, const std::filesystem::path& folder) {
     if (saved.case_text != to_toml(it))
         throw CaseError(fmt::format("{}: the run in it is of another case than the one given; its own is {}",
                                     folder.string(), (folder / "case.toml").string()));
-    return {{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it)), std::move(saved.fields)},
-            saved.step, saved.next_dt};
+    return {{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it)),
+             std::move(saved.fields)},
+            saved.step,
+            saved.next_dt};
 }
 
 Checkpoint checkpoint_of(const Place& place, const Case& it) {
@@ -72,6 +69,10 @@ double step_length(const Place& place, const TimePlan& plan) {
     return left > place.next_dt * (1 + same_time) ? place.next_dt : left;
 }
 
+bool at_end(const Place& place, const TimePlan& plan) {
+    return place.state.moving.time() >= plan.end - same_time * plan.end / plan.steps;
+}
+
 class TimeLoop {
 public:
     TimeLoop(const Case& it, const Ranks& ranks, Place place, RunOutput& output)
@@ -80,13 +81,13 @@ public:
     /// Goes on to the end of the case. Returns false if it was interrupted.
     bool run() {
         const double wanted = it_.time.end / it_.time.steps;
-        while (place_.state.moving.time() < it_.time.end - same_time * wanted) {
+        while (!at_end(place_, it_.time)) {
             if (interrupted(ranks_)) return false;
             const auto begin = std::chrono::steady_clock::now();
             const StepReport report =
                 time_step(place_.state, it_, ranks_, step_length(place_, it_.time), least_dt_share * wanted);
             ++place_.step;
-            // A step that had to be cut is followed by one of that length, then twice it, up to the wanted one.
+            // After a step that had to be cut, one of its length, then twice it, up to the wanted one.
             place_.next_dt = report.attempts > 1 ? report.dt : std::min(wanted, 2 * place_.next_dt);
             write(report, begin);
         }
@@ -97,15 +98,14 @@ public:
 
 private:
     void write(const StepReport& report, std::chrono::steady_clock::time_point begin) {
-        const bool last = report.time >= it_.time.end * (1 - same_time);
         const State& state = place_.state;
         output_.write_step(place_.step, report, state);
-        if (place_.step % it_.output.every == 0 || last) {
+        if (place_.step % it_.output.every == 0 || at_end(place_, it_.time)) {
             output_.write_frame(place_.step, state);
             output_.write_checkpoint(checkpoint());
         }
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        output_.show_progress(place_.step, report, seconds * (it_.time.end - report.time) / report.dt);
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+        output_.show_progress(place_.step, report, taken.count() * (it_.time.end - report.time) / report.dt);
     }
 
     const Case& it_;
@@ -131,7 +131,7 @@ int run_to_end(TimeLoop& loop, RunOutput& output) {
 
 int run_with(const RunOptions& options, const Ranks& ranks) {
     const Case it = read_case(options.case_file);
-    check_paths(it.domain, 0, it.time.end, path_samples_per_step * it.time.steps + 1);
+    check_all_paths(it);
     const double wanted = it.time.end / it.time.steps;
     Place place = options.resume ? resume(it, options.out) : Place{start(it), 0, wanted};
     RunOutput output(options, it, ranks.rank == 0, place.step, place.state);
@@ -145,7 +145,8 @@ int run_with(const RunOptions& options, const Ranks& ranks) {
 /// Only rank 0 speaks: the others meet the same errors, as they do the same.
 void silence(const Ranks& ranks) {
     if (ranks.rank == 0) return;
-    if (std::freopen("/dev/null", "w", stdout) == nullptr || std::freopen("/dev/null", "w", stderr) == nullptr)
+    if (std::freopen("/dev/null", "w", stdout) == nullptr ||
+        std::freopen("/dev/null", "w", stderr) == nullptr)
         throw FileError("/dev/null cannot be opened");
 }
 
@@ -161,6 +162,8 @@ int run(const RunOptions& options) {
         threads.emplace(global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
     const CatchInterrupts catching;
     try {
+        check_run_folder(options);
+        MPI_Barrier(ranks.communicator);  // all have looked before one writes
         return run_with(options, ranks);
     } catch (const FileError& error) {
         if (ranks.count == 1) throw;

@@ -1,5 +1,6 @@
 #include "app/run_output.h"
 
+#include "app/run_folder.h"
 #include "base/error.h"
 #include "io/file.h"
 #include "io/vtk.h"
@@ -30,31 +31,39 @@ const char* rung(const Changes& c) {
 
 }  // namespace
 
-RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state)
+RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step,
+                     const State& state)
     : folder_(options.out), it_(it), speak_(speak) {
     if (!speak_) return;
-    if (options.resume) go_on(step);
+    if (options.resume) go_on(step, state);
     else start(state);
 }
 
 void RunOutput::start(const State& state) {
-    std::filesystem::create_directories(folder_ / "frames");
+    std::error_code trouble;
+    std::filesystem::create_directories(folder_ / "frames", trouble);
+    if (trouble) throw FileError(fmt::format("{}: cannot be made: {}", folder_.string(), trouble.message()));
     write_file(folder_ / "case.toml", to_toml(it_));
     table_.emplace(folder_ / "steps.csv", conserved(it_));
     write_frame(0, state);
 }
 
-void RunOutput::go_on(std::int64_t step) {
+void RunOutput::go_on(std::int64_t step, const State& state) {
     table_.emplace(folder_ / "steps.csv", conserved(it_), static_cast<int>(step));
     series_ = read_pvd(folder_ / "frames.pvd");
-    std::erase_if(series_, [&](const SeriesEntry& frame) { return frame.file > frame_name(step); });
+    std::erase_if(series_, [&](const SeriesEntry& frame) { return frame.time > state.moving.time(); });
+    write_pvd(folder_ / "frames.pvd", series_);
 }
 
 void RunOutput::write_step(std::int64_t step, const StepReport& report, const State& state) {
     if (!speak_) return;
     const Changes& c = report.changes;
     quality_ = summarise_quality(state.moving.reference());
-    StepRow row{.step = static_cast<int>(step), .time = report.time, .dt = report.dt, .attempts = report.attempts};
+    StepRow row;
+    row.step = static_cast<int>(step);
+    row.time = report.time;
+    row.dt = report.dt;
+    row.attempts = report.attempts;
     row.vertices = quality_->vertices;
     row.tets = quality_->tets;
     row.max_aspect_ratio = quality_->max_aspect_ratio;
@@ -75,7 +84,7 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
     row.fields = conserved(it_);
     for (FieldBalance& field : row.fields) {
         field.integral = report.energy;
-        field.transfer_error = report.energy_transfer_error;
+        field.transfer_error = report.energy != 0 ? report.energy_by_transfer / std::abs(report.energy) : 0;
     }
     table_->append(row);
 }
@@ -94,8 +103,11 @@ void RunOutput::write_checkpoint(const Checkpoint& checkpoint) {
 void RunOutput::show_progress(std::int64_t step, const StepReport& report, double seconds_left) {
     if (!speak_) return;
     const double wanted = it_.time.end / it_.time.steps;
-    const auto steps_left = static_cast<std::int64_t>(std::ceil((it_.time.end - report.time) / wanted - 1e-6));
-    ProgressRow row{.step = static_cast<int>(step), .steps = static_cast<int>(step + steps_left)};
+    const double left = it_.time.end - report.time;
+    const auto steps_left = static_cast<std::int64_t>(std::ceil(left / wanted - 1e-6));
+    ProgressRow row;
+    row.step = static_cast<int>(step);
+    row.steps = static_cast<int>(step + steps_left);
     row.time = report.time;
     row.worst_aspect_ratio = quality_->max_aspect_ratio;
     row.rung = rung(report.changes);

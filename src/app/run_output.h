@@ -13,13 +13,11 @@
 
 namespace kropla {
 
-inline constexpr const char* checkpoint_name = "checkpoint.h5";
-
-/// What a run leaves in its folder (design.md, part 6) and says on the way. On ranks that do not `speak`, nothing.
+/// What a run leaves in its folder and says on the way. On ranks that do not `speak`, nothing.
 class RunOutput {
 public:
-    /// Starts the folder with the case and the first frame, or continues it after `step`; later frames and rows,
-    /// which a run that was ended left behind its checkpoint, are dropped. Throws FileError.
+    /// Starts the folder with the case and the first frame, or continues it after `step`; later frames and
+    /// rows, which a run that was ended left behind its checkpoint, are dropped. Throws FileError.
     RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state);
 
     void write_step(std::int64_t step, const StepReport& report, const State& state);
@@ -30,7 +28,7 @@ public:
 
 private:
     void start(const State& state);
-    void go_on(std::int64_t step);
+    void go_on(std::int64_t step, const State& state);
 
     std::filesystem::path folder_;
     const Case& it_;

@@ -28,31 +28,38 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+double energy_in(const Case& it, const Mesh& mesh, const std::vector<NodalField>& fields) {
+    return it.heat ? energy(mesh, *it.heat, fields.front().values) : 0;
+}
+
 void carry_fields(std::vector<NodalField>& fields, const Mesh& before, const Mesh& after,
-                  std::span<const Vertex> changed, StepReport& report) {
+                  std::span<const Vertex> changed, const Case& it, StepReport& report) {
     const Stopwatch watch(report.transfer_seconds);
     if (fields.empty()) return;
+    report.energy_by_transfer -= energy_in(it, before, fields);
     const auto plan = interpolations(before, after, changed);
     for (NodalField& field : fields) field.values = carry(field.values, after, plan);
+    report.energy_by_transfer += energy_in(it, after, fields);
 }
 
 /// Stages 2.1 to 2.4: the current mesh and the fields on its beginning; the reference is not touched.
-void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, StepReport& report) {
+void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, const Case& it,
+             StepReport& report) {
     std::span<const Vertex> changed;
     {
         const Stopwatch watch(report.mesh_seconds);
         moving.begin_step();                   // 2.1
         changed = moving.refine().vertices;    // 2.2
     }
-    if (!changed.empty()) carry_fields(fields, moving.reference(), moving.before(), changed, report);
+    if (!changed.empty()) carry_fields(fields, moving.reference(), moving.before(), changed, it, report);
     const Stopwatch watch(report.mesh_seconds);
     moving.move_boundary(t);                   // 2.3
     moving.optimise();                         // 2.4
 }
 
 /// Stage 2.5.
-void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, const Ranks& ranks, double dt,
-              StepReport& report) {
+void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, const Ranks& ranks,
+              double dt, StepReport& report) {
     const Stopwatch watch(report.simulate_seconds);
     if (it.heat)
         step_heat(ranks, moving.before(), moving.current(), *it.heat, fields.front(), moving.time(), dt);
@@ -66,12 +73,9 @@ void accept(State& state, std::vector<NodalField> fields, const Case& it, StepRe
         const Stopwatch watch(report.mesh_seconds);
         changed = moving.accept().vertices;
     }
-    const double before = it.heat ? energy(moving.before(), *it.heat, fields.front().values) : 0;
-    carry_fields(fields, moving.before(), moving.reference(), changed, report);
+    carry_fields(fields, moving.before(), moving.reference(), changed, it, report);
     state.fields = std::move(fields);
-    if (!it.heat) return;
-    report.energy = energy(moving.reference(), *it.heat, state.fields.front().values);
-    report.energy_transfer_error = before != 0 ? (report.energy - before) / std::abs(before) : 0;
+    report.energy = energy_in(it, moving.reference(), state.fields);
 }
 
 Changes all_changes(const StepStatistics& s) {
@@ -89,14 +93,15 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt
     StepReport report;
     for (report.attempts = 1;; ++report.attempts) {
         std::vector<NodalField> fields = state.fields;
-        prepare(moving, fields, start + dt, report);
+        report.energy_by_transfer = 0;
+        prepare(moving, fields, start + dt, it, report);
         if (const auto refusal = moving.refusal()) {
             moving.refuse();
             report.refused = refusal->why;
             if (report.attempts > 1) dt /= 2;
             if (dt >= least_dt) continue;
-            throw FloorError(fmt::format("at t = {:.6g} s the mesh cannot go on, even by {:.2g} s: {}", start, 2 * dt,
-                                         refusal->why));
+            throw FloorError(fmt::format("at t = {:.6g} s the mesh cannot go on, even by {:.2g} s: {}", start,
+                                         2 * dt, refusal->why));
         }
         simulate(moving, fields, it, ranks, dt, report);
         accept(state, std::move(fields), it, report);
@@ -105,8 +110,8 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt
     report.time = moving.time();
     report.dt = dt;
     report.changes = all_changes(moving.statistics());
-    report.touched_fraction =
-        static_cast<double>(moving.statistics().cells_touched) / static_cast<double>(count_tets(moving.reference()));
+    report.touched_fraction = static_cast<double>(moving.statistics().cells_touched) /
+                              static_cast<double>(count_tets(moving.reference()));
     return report;
 }
 

@@ -21,14 +21,16 @@ struct StepReport {
     Changes changes;          // of the mesh, at all stages of the accepted attempt
     double touched_fraction = 0;
     double mesh_seconds = 0, simulate_seconds = 0, transfer_seconds = 0;  // all attempts
-    double energy = 0;                 // [J] after the step
-    double energy_transfer_error = 0;  // [-] relative change that carrying the solution made
+    double energy = 0;              // [J] after the step
+    double energy_by_transfer = 0;  // [J] of it, that carrying the solution added
     std::string refused;               // why the last refused attempt was, if one was
 };
 
-/// Takes the state one step on, by `dt` [s] or as much of it as can be done: an attempt that is refused is tried again
-/// with the mesh remeshed where it got stuck, then with half the way. On any exception the state is as it was.
+/// Takes the state one step on, by `dt` [s] or as much of it as can be done: an attempt that is refused is
+/// tried again with the mesh remeshed where it got stuck, then with half the way. On any exception the state
+/// is as it was.
 /// Throws FloorError if the way left is below `least_dt`, SolverError if the solver does not converge.
-[[nodiscard]] StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt, double least_dt);
+[[nodiscard]] StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt,
+                                   double least_dt);
 
 }  // namespace kropla

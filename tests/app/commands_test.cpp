@@ -103,6 +103,9 @@ TEST(Program, KeepsAnotherRunsFolder) {
     expect_complaint(kropla_program(folder, "run a.toml --out d --resume"), 2,
                      "d: has no checkpoint.h5 to resume from; leave --resume out to start the run");
     write(folder.path / "d" / "steps.csv", "step\n");
+    expect_complaint(kropla_program(folder, "run a.toml --out d"), 2,
+                     "d: holds steps.csv, but no checkpoint.h5 to go on from; name another folder with --out");
+    write(folder.path / "d" / "checkpoint.h5", "");
     expect_complaint(
         kropla_program(folder, "run a.toml --out d"), 2,
         "d: holds a run already; add --resume to go on with it, or name another folder with --out");

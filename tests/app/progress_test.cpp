@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <string>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace kropla {
@@ -85,6 +86,8 @@ TEST(Progress, WritesOverItsLineOnATerminal) {
         GTEST_SKIP() << "no pseudo-terminals here";
     std::FILE* terminal = std::fopen(ptsname(reader), "w");
     ASSERT_NE(terminal, nullptr);
+    const winsize wide{.ws_row = 24, .ws_col = 200, .ws_xpixel = 0, .ws_ypixel = 0};
+    ASSERT_EQ(ioctl(reader, TIOCSWINSZ, &wide), 0);
     ProgressRow shorter = row;
     shorter.heat_seconds = {};
     {

@@ -1,0 +1,118 @@
+// Runs that were stopped in the middle and went on: the end is the same as without.
+#include "held_program.h"
+#include "io/pvd.h"
+#include "run_results.h"
+
+#include <gtest/gtest.h>
+
+namespace kropla {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The case, run without a stop: the folder "whole".
+void run_whole(const TemporaryFolder& folder, const std::string& text) {
+    write(folder.path / "a.toml", text);
+    ASSERT_EQ(kropla_program(folder, "run a.toml --out whole").code, 0);
+}
+
+/// Begins the case in the folder "d" and sends the signal in the step `at`.
+Outcome stopped(const TemporaryFolder& folder, int at, int signal) {
+    HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, at - 1);
+    EXPECT_TRUE(program.reaches("d", at));
+    program.signal(signal);
+    return program.finish();
+}
+
+std::size_t rows(const TemporaryFolder& folder) { return read_table(folder.path / "d/steps.csv").rows; }
+
+TEST(Resume, EqualsTheWholeRunAfterAnInterrupt) {
+    for (const int every : {1, 3}) {
+        SCOPED_TRACE(every);
+        const TemporaryFolder folder;
+        run_whole(folder, short_case(5, every));
+        for (const int signal : {SIGINT, SIGTERM}) {
+            const Outcome it = stopped(folder, 2, signal);
+            EXPECT_EQ(it.code, 130);
+            EXPECT_EQ(it.err, "");
+            EXPECT_TRUE(it.out.ends_with("\ninterrupted: a checkpoint is written; go on with --resume\n"))
+                << it.out;
+            EXPECT_EQ(rows(folder), 2u);
+            EXPECT_EQ(read_pvd(folder.path / "d/frames.pvd").size(), every == 1 ? 3u : 1u);
+            EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+            expect_same_run(folder.path / "d", folder.path / "whole");
+            fs::remove_all(folder.path / "d");
+        }
+    }
+}
+
+TEST(Resume, EqualsTheWholeRunAfterSuddenDeath) {
+    for (const int every : {1, 3}) {
+        SCOPED_TRACE(every);
+        const TemporaryFolder folder;
+        run_whole(folder, short_case(5, every));
+        const Outcome it = stopped(folder, 4, SIGKILL);
+        EXPECT_EQ(it.code, -1);
+        EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+        expect_same_run(folder.path / "d", folder.path / "whole");
+    }
+}
+
+TEST(Resume, GoesOnWithStepsThatWereCut) {
+    const TemporaryFolder folder;
+    run_whole(folder, leaping_case());
+    ASSERT_EQ(stopped(folder, 1, SIGINT).code, 130);
+    EXPECT_EQ(rows(folder), 1u);
+    EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+    expect_same_run(folder.path / "d", folder.path / "whole");
+}
+
+// The program died when rows and frames were written and the checkpoint was not.
+TEST(Resume, DropsWhatIsBeyondTheCheckpoint) {
+    const TemporaryFolder folder;
+    run_whole(folder, short_case(4));
+    ASSERT_EQ(stopped(folder, 2, SIGINT).code, 130);
+    for (const char* name : {"steps.csv", "frames.pvd", "frames/00003.vtu", "frames/00004.vtu"})
+        fs::copy_file(folder.path / "whole" / name, folder.path / "d" / name,
+                      fs::copy_options::overwrite_existing);
+    EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume -ksp_max_it 1").code,
+              4);  // not a step further
+    EXPECT_EQ(rows(folder), 2u);
+    EXPECT_EQ(read_pvd(folder.path / "d/frames.pvd").size(), 3u);
+    EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+    expect_same_run(folder.path / "d", folder.path / "whole");
+}
+
+TEST(Resume, OfAFinishedRunChangesNothing) {
+    const TemporaryFolder folder;
+    run_whole(folder, short_case(2));
+    fs::copy(folder.path / "whole", folder.path / "d", fs::copy_options::recursive);
+    const Outcome it = kropla_program(folder, "run a.toml --out d --resume");
+    EXPECT_EQ(it.code, 0) << it.err;
+    expect_same_run(folder.path / "d", folder.path / "whole");
+    for (const char* name : {"steps.csv", "checkpoint.h5"})
+        EXPECT_EQ(contents(folder.path / "d" / name), contents(folder.path / "whole" / name)) << name;
+}
+
+TEST(Resume, RefusesAnotherCase) {
+    const TemporaryFolder folder;
+    run_whole(folder, short_case(2));
+    write(folder.path / "b.toml", short_case(3));
+    const Outcome it = kropla_program(folder, "run b.toml --out whole --resume");
+    EXPECT_EQ(it.code, 2);
+    expect_one_line(it.err, "whole: the run in it is of another case than the one given");
+    EXPECT_EQ(read_table(folder.path / "whole/steps.csv").rows, 2u);
+}
+
+TEST(Resume, RefusesADamagedCheckpoint) {
+    const TemporaryFolder folder;
+    run_whole(folder, short_case(2));
+    const fs::path checkpoint = folder.path / "whole/checkpoint.h5";
+    fs::resize_file(checkpoint, fs::file_size(checkpoint) / 2);
+    const Outcome it = kropla_program(folder, "run a.toml --out whole --resume");
+    EXPECT_EQ(it.code, 5);
+    expect_one_line(it.err, "checkpoint.h5: is truncated");
+}
+
+}  // namespace
+}  // namespace kropla
