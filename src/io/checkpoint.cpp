@@ -2,15 +2,16 @@
 // business. In HDF5's user block, the first 512 bytes, which HDF5 itself passes over, stands one line of
 // text:
 //
-//     Kropla checkpoint, format 1, 123456 bytes, checksum 0123456789abcdef
+//     Kropla checkpoint, format 2, 123456 bytes, checksum 0123456789abcdef
 //
 // so that a file that is foreign, of another version, truncated or damaged is known before HDF5 reads it. The
 // checksum, of all after the user block, is made as FNV-1a of 64 bits [Fowler, Noll, Vo 1991], here by words
 // of 8 bytes, for speed.
 //
 //     /                   attributes format, time [s], next_dt [s], step; dataset case (text)
-//     /mesh               position (n x 3), tet_at, tets (m x 4), neighbour (m x 4), patch (m x 4), region,
-//                         free_tets, free_vertices; -1 names nothing
+//     /mesh               position (n x 3), tet_at, layer_at, tets (m x 4), neighbour (m x 4), patch (m x 4),
+//                         region, free_tets, free_vertices; -1 names nothing
+//     /mesh/layers/0, ... attributes region, body, count; datasets triangles (k x 3), columns
 //     /fields/0, 1, ...   attributes name, unit; dataset values (n)
 //     /values             an attribute each
 
@@ -33,7 +34,7 @@
 namespace kropla {
 namespace {
 
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 constexpr std::size_t user_block = 512;  // [bytes] the least that HDF5 allows
 
 /// What HDF5 refuses; the path is put before it where it is known.
@@ -108,6 +109,11 @@ template <class Tag>
 struct Layout<Index<Tag>> {
     static constexpr hsize_t width = 1;
     static hid_t type() { return H5T_NATIVE_INT32; }
+};
+template <>
+struct Layout<int> {
+    static constexpr hsize_t width = 1;
+    static hid_t type() { return H5T_NATIVE_INT; }
 };
 template <class Item, std::size_t N>
 struct Layout<std::array<Item, N>> {
@@ -189,16 +195,58 @@ std::string read_text(hid_t parent, const char* name) {
 
 // ---- the parts
 
+Group new_group(hid_t parent, const std::string& name) {
+    return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make a group"};
+}
+
+/// How many groups 0, 1, ... there are.
+std::size_t count_groups(hid_t all) {
+    H5G_info_t info = {};
+    check(H5Gget_info(all, &info), "count the parts of a group");
+    return info.nlinks;
+}
+
+void write_layers(hid_t parent, const std::vector<PrismLayer>& layers) {
+    const Group all = new_group(parent, "layers");
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Group one = new_group(all, std::to_string(i));
+        write_number<std::int64_t>(one, "region", layers[i].region.value);
+        write_number<std::int64_t>(one, "body", layers[i].body.value);
+        write_number<std::int64_t>(one, "count", layers[i].count);
+        write_array(one, "triangles", layers[i].triangles);
+        write_array(one, "columns", layers[i].columns);
+    }
+}
+
+std::vector<PrismLayer> read_layers(hid_t parent) {
+    const Group all(H5Gopen2(parent, "layers", H5P_DEFAULT), "find the group layers");
+    std::vector<PrismLayer> layers(count_groups(all));
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Group one(H5Gopen2(all, std::to_string(i).c_str(), H5P_DEFAULT), "find a layer");
+        const auto number = [&](const char* name) {
+            return static_cast<std::int32_t>(read_number<std::int64_t>(one, name));
+        };
+        layers[i].region = Region(number("region"));
+        layers[i].body = Region(number("body"));
+        layers[i].count = number("count");
+        read_array(one, "triangles", layers[i].triangles);
+        read_array(one, "columns", layers[i].columns);
+    }
+    return layers;
+}
+
 void write_mesh(hid_t file, const Mesh& mesh) {
-    const Group group(H5Gcreate2(file, "mesh", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make a group");
+    const Group group = new_group(file, "mesh");
     write_array(group, "position", mesh.position);
     write_array(group, "tet_at", mesh.tet_at);
+    write_array(group, "layer_at", mesh.layer_at);
     write_array(group, "tets", mesh.tets);
     write_array(group, "neighbour", mesh.neighbour);
     write_array(group, "patch", mesh.patch);
     write_array(group, "region", mesh.region);
     write_array(group, "free_tets", mesh.free_tets);
     write_array(group, "free_vertices", mesh.free_vertices);
+    write_layers(group, mesh.layers);
 }
 
 Mesh read_mesh(hid_t file) {
@@ -206,20 +254,21 @@ Mesh read_mesh(hid_t file) {
     Mesh mesh;
     read_array(group, "position", mesh.position);
     read_array(group, "tet_at", mesh.tet_at);
+    read_array(group, "layer_at", mesh.layer_at);
     read_array(group, "tets", mesh.tets);
     read_array(group, "neighbour", mesh.neighbour);
     read_array(group, "patch", mesh.patch);
     read_array(group, "region", mesh.region);
     read_array(group, "free_tets", mesh.free_tets);
     read_array(group, "free_vertices", mesh.free_vertices);
+    mesh.layers = read_layers(group);
     return mesh;
 }
 
 void write_fields(hid_t file, const std::vector<NodalField>& fields) {
-    const Group all(H5Gcreate2(file, "fields", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make a group");
+    const Group all = new_group(file, "fields");
     for (std::size_t i = 0; i < fields.size(); ++i) {
-        const Group one(H5Gcreate2(all, std::to_string(i).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                        "make a group");
+        const Group one = new_group(all, std::to_string(i));
         write_text(one, "name", fields[i].name);
         write_text(one, "unit", fields[i].unit);
         write_array(one, "values", fields[i].values);
@@ -228,9 +277,7 @@ void write_fields(hid_t file, const std::vector<NodalField>& fields) {
 
 std::vector<NodalField> read_fields(hid_t file) {
     const Group all(H5Gopen2(file, "fields", H5P_DEFAULT), "find the group fields");
-    H5G_info_t info = {};
-    check(H5Gget_info(all, &info), "count the fields");
-    std::vector<NodalField> fields(info.nlinks);
+    std::vector<NodalField> fields(count_groups(all));
     for (std::size_t i = 0; i < fields.size(); ++i) {
         const Group one(H5Gopen2(all, std::to_string(i).c_str(), H5P_DEFAULT), "find a field");
         fields[i].name = read_text(one, "name");
@@ -241,7 +288,7 @@ std::vector<NodalField> read_fields(hid_t file) {
 }
 
 void write_values(hid_t file, const std::map<std::string, double>& values) {
-    const Group group(H5Gcreate2(file, "values", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "make a group");
+    const Group group = new_group(file, "values");
     for (const auto& [name, value] : values) write_number(group, name.c_str(), value);
 }
 

@@ -10,6 +10,7 @@
 #include "base/tetrahedron.h"
 #include "io/file.h"
 #include "io/vtu_text.h"
+#include "mesh/prisms.h"
 #include "mesh/quality.h"
 #include "mesh/topology.h"
 
@@ -36,6 +37,7 @@
 #include <limits>
 #include <new>
 #include <numbers>
+#include <optional>
 
 namespace kropla {
 namespace {
@@ -74,6 +76,10 @@ private:
     std::string first_;
 };
 
+/// VTK's wedge has its first triangle turned outwards, ours inwards: which of our corners each of VTK's is, and
+/// the other way round. See the page of vtkWedge in VTK's documentation.
+constexpr std::array<std::size_t, 6> wedge_corners = {0, 2, 1, 3, 5, 4};
+
 // ---- writing
 
 template <class VtkArray>
@@ -95,17 +101,28 @@ void add_cells(vtkUnstructuredGrid* grid, const Mesh& mesh) {
     grid->SetPoints(points);
 
     // 64 bits for the offsets' sake: four per cell pass 2^31 before the cells do.
-    const auto offsets = make_array<vtkTypeInt64Array>("offsets", mesh.tets.size() + 1);
-    const auto connectivity = make_array<vtkTypeInt64Array>("connectivity", 4 * mesh.tets.size());
-    vtkIdType next = 0;
+    const std::vector<Prism> prisms = all_prisms(mesh);
+    const std::size_t cells = mesh.tets.size() + prisms.size();
+    const auto offsets = make_array<vtkTypeInt64Array>("offsets", cells + 1);
+    const auto connectivity =
+        make_array<vtkTypeInt64Array>("connectivity", 4 * mesh.tets.size() + 6 * prisms.size());
+    const auto types = make_array<vtkUnsignedCharArray>("types", cells);
+    vtkIdType cell = 0, next = 0;
     for (const auto& tet : mesh.tets) {
-        offsets->SetValue(next / 4, next);
+        types->SetValue(cell, VTK_TETRA);
+        offsets->SetValue(cell++, next);
         for (const Vertex v : tet) connectivity->SetValue(next++, v.value);
     }
-    offsets->SetValue(next / 4, next);
-    vtkNew<vtkCellArray> cells;
-    cells->SetData(offsets, connectivity);
-    grid->SetCells(VTK_TETRA, cells);
+    for (const Prism& prism : prisms) {
+        types->SetValue(cell, VTK_WEDGE);
+        offsets->SetValue(cell++, next);
+        const auto vertices = prism_vertices(mesh, prism);
+        for (const std::size_t corner : wedge_corners) connectivity->SetValue(next++, vertices[corner].value);
+    }
+    offsets->SetValue(cell, next);
+    vtkNew<vtkCellArray> array;
+    array->SetData(offsets, connectivity);
+    grid->SetCells(types, array);
 }
 
 double min_dihedral(const Mesh& mesh, Tet t) {
@@ -115,17 +132,60 @@ double min_dihedral(const Mesh& mesh, Tet t) {
     return *std::min_element(angles.begin(), angles.end()) * (180 / std::numbers::pi);
 }
 
+/// As an aspect ratio: 3 is perfect, infinity turned over.
+double aspect_ratio(const std::array<Vec3, 6>& corners) {
+    const double jacobian = scaled_corner_jacobian(corners);
+    return jacobian > 0 ? 3 / jacobian : std::numeric_limits<double>::infinity();
+}
+
+/// Between the facets at each corner, each the plane of two of the three edges there [deg].
+double min_dihedral(const std::array<Vec3, 6>& x) {
+    double largest_cosine = -1;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const std::size_t base = i < 3 ? 0 : 3, k = i % 3;
+        const std::array<Vec3, 3> edges = {x[base + (k + 1) % 3] - x[i], x[base + (k + 2) % 3] - x[i],
+                                           x[(i + 3) % 6] - x[i]};
+        for (std::size_t e = 0; e < 3; ++e) {  // the facets on either side of this edge
+            const Vec3 n = cross(edges[e], edges[(e + 1) % 3]), m = cross(edges[e], edges[(e + 2) % 3]);
+            const double size = norm(n) * norm(m);
+            largest_cosine = std::max(largest_cosine, size > 0 ? dot(n, m) / size : 1.0);
+        }
+    }
+    return std::acos(std::clamp(largest_cosine, -1.0, 1.0)) * (180 / std::numbers::pi);
+}
+
+/// What is said of one cell.
+struct CellFigures {
+    Region region;
+    int layer;
+    double aspect_ratio, min_dihedral;
+};
+
+std::vector<CellFigures> figures_of(const Mesh& mesh) {
+    std::vector<CellFigures> figures;
+    for (const Tet t : mesh.tets.indices())
+        figures.push_back({mesh.region[t], 0, aspect_ratio(mesh, t), min_dihedral(mesh, t)});
+    for (const Prism& prism : all_prisms(mesh)) {
+        const auto corners = prism_corners(mesh, prism);
+        figures.push_back({layer_of(mesh, prism.layer).region, prism.k + 1, aspect_ratio(corners),
+                           min_dihedral(corners)});
+    }
+    return figures;
+}
+
 void add_cell_arrays(vtkUnstructuredGrid* grid, const Mesh& mesh) {
-    const auto region = make_array<vtkTypeInt32Array>("region", mesh.tets.size());
-    const auto aspect = make_array<vtkDoubleArray>("aspect_ratio", mesh.tets.size());
-    const auto dihedral = make_array<vtkDoubleArray>("min_dihedral", mesh.tets.size());
-    const auto layer = make_array<vtkTypeInt32Array>("layer", mesh.tets.size());
+    const std::vector<CellFigures> figures = figures_of(mesh);
+    const auto region = make_array<vtkTypeInt32Array>("region", figures.size());
+    const auto aspect = make_array<vtkDoubleArray>("aspect_ratio", figures.size());
+    const auto dihedral = make_array<vtkDoubleArray>("min_dihedral", figures.size());
+    const auto layer = make_array<vtkTypeInt32Array>("layer", figures.size());
     dihedral->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), "deg");
-    for (const Tet t : mesh.tets.indices()) {
-        region->SetValue(t.value, mesh.region[t].value);
-        aspect->SetValue(t.value, aspect_ratio(mesh, t));
-        dihedral->SetValue(t.value, min_dihedral(mesh, t));
-        layer->SetValue(t.value, 0);
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+        const auto cell = static_cast<vtkIdType>(i);
+        region->SetValue(cell, figures[i].region.value);
+        aspect->SetValue(cell, figures[i].aspect_ratio);
+        dihedral->SetValue(cell, figures[i].min_dihedral);
+        layer->SetValue(cell, figures[i].layer);
     }
     grid->GetCellData()->AddArray(region);
     grid->GetCellData()->AddArray(aspect);
@@ -180,7 +240,9 @@ Array<Vertex, Vec3> read_positions(const std::filesystem::path& path, vtkUnstruc
     return position;
 }
 
-/// Throws unless the cells are tets and their lists of vertices are in the file.
+std::string cell_name(vtkIdType cell) { return "cell " + std::to_string(cell); }
+
+/// Throws unless the cells are tets and prisms and their lists of vertices are in the file.
 void check_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
     const vtkIdType count = grid.GetNumberOfCells();
     if (count <= 0) fail(path, "has no cells");
@@ -190,47 +252,74 @@ void check_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
         fail(path, "is damaged: its lists of cells do not fit each other");
     for (vtkIdType cell = 0; cell < count; ++cell) {
         const int type = grid.GetCellType(cell);
-        if (type != VTK_TETRA)
-            fail(path, "cell " + std::to_string(cell) + " is a " +
-                           vtkCellTypes::GetClassNameFromTypeId(type) + " (VTK cell type " +
-                           std::to_string(type) + "), not a linear tet");
-        if (cells.GetCellSize(cell) != 4)
-            fail(path, "cell " + std::to_string(cell) + " is a tet of " +
+        if (type != VTK_TETRA && type != VTK_WEDGE)
+            fail(path, cell_name(cell) + " is a " + vtkCellTypes::GetClassNameFromTypeId(type) +
+                           " (VTK cell type " + std::to_string(type) + "), not a linear tet or prism");
+        if (cells.GetCellSize(cell) != (type == VTK_TETRA ? 4 : 6))
+            fail(path, cell_name(cell) + (type == VTK_TETRA ? " is a tet of " : " is a prism of ") +
                            std::to_string(cells.GetCellSize(cell)) + " vertices");
     }
 }
 
-Array<Tet, std::array<Vertex, 4>> read_tets(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
-    check_cells(path, grid);
-    Array<Tet, std::array<Vertex, 4>> tets(static_cast<std::size_t>(grid.GetNumberOfCells()));
-    for (const Tet t : tets.indices()) {
-        vtkIdType size = 0;
-        const vtkIdType* vertices = nullptr;
-        grid.GetCells()->GetCellAtId(t.value, size, vertices);
-        for (std::size_t i = 0; i < 4; ++i) {
-            if (vertices[i] < 0 || vertices[i] >= grid.GetNumberOfPoints())
-                fail(path, "cell " + std::to_string(t.value) + " has vertex " + std::to_string(vertices[i]) +
-                               ", which is not among the " + std::to_string(grid.GetNumberOfPoints()));
-            tets[t][i] = Vertex(static_cast<std::int32_t>(vertices[i]));
-        }
+template <std::size_t N>
+std::array<Vertex, N> read_vertices(const std::filesystem::path& path, vtkUnstructuredGrid& grid, vtkIdType cell) {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    grid.GetCells()->GetCellAtId(cell, size, ids);
+    std::array<Vertex, N> vertices;
+    for (std::size_t i = 0; i < N; ++i) {
+        if (ids[i] < 0 || ids[i] >= grid.GetNumberOfPoints())
+            fail(path, cell_name(cell) + " has vertex " + std::to_string(ids[i]) + ", which is not among the " +
+                           std::to_string(grid.GetNumberOfPoints()));
+        vertices[i] = Vertex(static_cast<std::int32_t>(ids[i]));
     }
-    return tets;
+    return vertices;
 }
 
-Array<Tet, Region> read_regions(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
-    Array<Tet, Region> region(static_cast<std::size_t>(grid.GetNumberOfCells()), surroundings);
-    vtkDataArray* array = grid.GetCellData()->GetArray("region");
-    if (array == nullptr) return region;
+/// A cell array of whole numbers 0, 1, ...; nothing if there is none.
+std::optional<std::vector<std::int32_t>> read_numbers(const std::filesystem::path& path,
+                                                      vtkUnstructuredGrid& grid, const std::string& name) {
+    vtkDataArray* array = grid.GetCellData()->GetArray(name.c_str());
+    if (array == nullptr) return {};
     if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != grid.GetNumberOfCells())
-        fail(path, "the cell array region has not one value per cell");
-    for (const Tet t : region.indices()) {
-        const double value = array->GetComponent(t.value, 0);
+        fail(path, "the cell array " + name + " has not one value per cell");
+    std::vector<std::int32_t> numbers;
+    for (vtkIdType cell = 0; cell < grid.GetNumberOfCells(); ++cell) {
+        const double value = array->GetComponent(cell, 0);
         if (!(value >= 0 && value < std::numeric_limits<std::int32_t>::max()) || value != std::floor(value))
-            fail(path, "cell " + std::to_string(t.value) + " has the region " + std::to_string(value) +
-                           ", not 0, 1, 2, ...");
-        region[t] = Region(static_cast<std::int32_t>(value));
+            fail(path, cell_name(cell) + " has the " + name + " " + std::to_string(value) + ", not 0, 1, 2, ...");
+        numbers.push_back(static_cast<std::int32_t>(value));
     }
-    return region;
+    return numbers;
+}
+
+LoosePrism read_prism(const std::filesystem::path& path, vtkUnstructuredGrid& grid, vtkIdType cell, Region region,
+                      const std::optional<std::vector<std::int32_t>>& layers) {
+    if (!layers)
+        fail(path, cell_name(cell) + " is a prism, but there is no cell array layer to say of which layer");
+    const int layer = (*layers)[static_cast<std::size_t>(cell)];
+    if (layer < 1) fail(path, cell_name(cell) + " is a prism of layer 0, not 1, 2, ... from the wall");
+    const auto vertices = read_vertices<6>(path, grid, cell);
+    LoosePrism prism{.cell = static_cast<int>(cell), .vertices = {}, .region = region, .layer = layer};
+    for (std::size_t i = 0; i < 6; ++i) prism.vertices[wedge_corners[i]] = vertices[i];
+    return prism;
+}
+
+void read_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid, Cells& cells) {
+    check_cells(path, grid);
+    const auto regions = read_numbers(path, grid, "region");
+    std::optional<std::vector<std::int32_t>> layers;  // "layer" may mean something else where there are no prisms
+    for (vtkIdType cell = 0; cell < grid.GetNumberOfCells(); ++cell) {
+        const Region region = regions ? Region((*regions)[static_cast<std::size_t>(cell)]) : surroundings;
+        if (grid.GetCellType(cell) == VTK_TETRA) {
+            cells.tets.push_back(read_vertices<4>(path, grid, cell));
+            cells.region.push_back(region);
+        } else {
+            if (!layers) layers = read_numbers(path, grid, "layer");
+            cells.prisms.push_back(read_prism(path, grid, cell, region, layers));
+        }
+    }
+    if (cells.tets.empty()) fail(path, "has no tets");
 }
 
 std::vector<NodalField> read_fields(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
@@ -308,8 +397,7 @@ Cells read_vtu_cells(const std::filesystem::path& path) {
     const auto grid = parse(path, bytes);
     Cells cells;
     cells.position = read_positions(path, *grid);
-    cells.tets = read_tets(path, *grid);
-    cells.region = read_regions(path, *grid);
+    read_cells(path, *grid, cells);
     cells.fields = read_fields(path, *grid);
     return cells;
 }
@@ -324,6 +412,7 @@ Frame make_frame(Cells cells) {
             if (frame.mesh.neighbour[t][i].exists()) continue;
             frame.mesh.patch[t][i] = patch_of(frame.mesh, {t, corner}, box);
         }
+    if (!cells.prisms.empty()) attach_layers(frame.mesh, cells.prisms);
     return frame;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "io/stacks.h"
 #include "simulate/fields.h"
 
 #include <filesystem>
@@ -7,10 +8,16 @@
 
 namespace kropla {
 
-/// Writes a frame as a VTU file: the mesh without its free slots, the cell arrays region (0 = surroundings,
-/// 1... = bodies in order), aspect_ratio, min_dihedral [deg] and layer (0 for tets), and the fields as point
-/// arrays. The file gets its name when it is complete. Throws FileError with the path and the system's
-/// reason.
+/// Writes a frame as a VTU file: the mesh without its free slots, tets before prisms, and the fields as point
+/// arrays. Cell arrays:
+///
+///     region        0 = surroundings, 1... = bodies in order
+///     layer         0 for tets, 1... for prisms, counted from the wall
+///     aspect_ratio  of a tet R/r; of a prism 3 / its least scaled corner Jacobian (mesh/prisms.h). 3 is perfect
+///                   for both, infinity is turned over, and 10 is R/r = 10 or a scaled corner Jacobian of 0.3
+///     min_dihedral  [deg] between facets; of a prism measured at its corners, as its quads may be bent
+///
+/// The file gets its name when it is complete. Throws FileError with the path and the system's reason.
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {});
 
 /// What a VTU file says, before neighbours are known: cells as they stand, right or wrong.
@@ -18,12 +25,13 @@ struct Cells {
     Array<Vertex, Vec3> position;            // [m]
     Array<Tet, std::array<Vertex, 4>> tets;  // vertices exist; orientation and conformity are not looked at
     Array<Tet, Region> region;               // 0 where the file has no cell array "region"
+    std::vector<LoosePrism> prisms;          // vertices exist
     std::vector<NodalField> fields;          // point arrays of one component
 };
 
 /// Throws FileError, in one line, if the file is missing, unreadable, not VTU, truncated or damaged, or has
-/// no cells, cells that are not linear tets, cells of vertices that do not exist, or coordinates that are not
-/// finite.
+/// no tets, cells that are neither linear tets nor prisms, prisms without a cell array "layer", cells of vertices
+/// that do not exist, or coordinates that are not finite. Tets are numbered in the order of the file.
 [[nodiscard]] Cells read_vtu_cells(const std::filesystem::path& path);
 
 struct Frame {
@@ -32,8 +40,9 @@ struct Frame {
 };
 
 /// The mesh of these cells. A VTU file does not know patches: boundary facets get that of the face of the
-/// bounding box in which they lie, exactly by coordinates, else patch 0. The tets are not checked: see
-/// `verify`. Throws FileError as make_mesh, naming the cell but not the file.
+/// bounding box in which they lie, exactly by coordinates, or of the layer whose wall or shell they are, else
+/// patch 0. The cells are not checked: see `verify`. Throws FileError as make_mesh and attach_layers, naming the
+/// cell but not the file.
 [[nodiscard]] Frame make_frame(Cells cells);
 
 /// Both in one; all errors name the file.

@@ -15,6 +15,7 @@ Checkpoint example() {
     Mesh& mesh = checkpoint.mesh;
     mesh.free_vertices.push_back(mesh.position.push_back({-0.0, 5e-324, 1e300}));  // a free slot has bits too
     mesh.tet_at.push_back({});
+    mesh.layer_at.push_back({});
     checkpoint.fields = {{"temperature", "K", Array<Vertex, double>(mesh.position.size(), 0.1)},
                          {"enthalpy", "", Array<Vertex, double>(mesh.position.size(), -1e-9)}};
     checkpoint.time = 0.1;
@@ -84,8 +85,8 @@ TEST(Checkpoint, RefusesForeignFilesAndOtherVersions) {
     const Folder folder;
     write_checkpoint(folder / "a.h5", example());
     std::string other = read_file(folder / "a.h5");
-    other.replace(other.find("format 1"), 8, "format 2");
-    EXPECT_NE(refusal(folder, other).find("format 2, this program reads format 1"), std::string::npos);
+    other.replace(other.find("format 2"), 8, "format 1");
+    EXPECT_NE(refusal(folder, other).find("format 1, this program reads format 2"), std::string::npos);
     EXPECT_NE(refusal(folder, "").find("is not a checkpoint"), std::string::npos);
     EXPECT_NE(refusal(folder, "\x89HDF\r\n\x1a\n").find("is not a checkpoint"), std::string::npos);
     EXPECT_NE(message_of<FileError>([&] { (void)read_checkpoint(folder / "none.h5"); }).find("No such file"),

@@ -30,6 +30,7 @@ Mesh with_free_slots(const Mesh& mesh) {
     Mesh with = mesh;
     with.free_vertices.push_back(with.position.push_back({9, 9, 9}));
     with.tet_at.push_back({});
+    with.layer_at.push_back({});
     with.free_tets.push_back(with.tets.push_back({}));
     with.neighbour.push_back({});
     with.patch.push_back({});
@@ -160,7 +161,7 @@ TEST(Vtu, ReadsWhatOthersWrite) {
 
 TEST(Vtu, RefusesInOneLine) {
     EXPECT_EQ(refusal({.connectivity = "", .offsets = "", .types = "", .cell_count = 0}), "has no cells");
-    EXPECT_EQ(refusal({.types = "9"}), "cell 0 is a vtkQuad (VTK cell type 9), not a linear tet");
+    EXPECT_EQ(refusal({.types = "9"}), "cell 0 is a vtkQuad (VTK cell type 9), not a linear tet or prism");
     EXPECT_EQ(refusal({.connectivity = "0 1 2 4"}), "cell 0 has vertex 4, which is not among the 4");
     EXPECT_EQ(refusal({.connectivity = "0 1 2", .offsets = "3"}), "cell 0 is a tet of 3 vertices");
     const std::string region = "<DataArray type=\"Float64\" Name=\"region\" format=\"ascii\">-1</DataArray>";
