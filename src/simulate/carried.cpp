@@ -3,8 +3,7 @@
 // is found to rounding.
 #include "simulate/carried.h"
 
-#include "mesh/cells.h"
-#include "simulate/partition.h"
+#include "simulate/cells.h"
 
 #include <algorithm>
 
@@ -18,13 +17,8 @@ constexpr double least_extent = 1e-9;  // [-] a flatter cloud, by its determinan
 
 std::vector<Vertex> interface_vertices(const Mesh& mesh, Region body) {
     std::vector<Vertex> vertices;
-    for (Tet t : living_tets(mesh, body)) {
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Tet other = mesh.neighbour[t][corner];
-            if (!other.exists() || mesh.region[other] == body) continue;
-            for (int k : tet_facets[corner]) vertices.push_back(mesh.tets[t][static_cast<std::size_t>(k)]);
-        }
-    }
+    for (const auto& facet : region_surface(mesh, body).interface)
+        vertices.insert(vertices.end(), facet.begin(), facet.end());
     std::ranges::sort(vertices);
     const auto repeated = std::ranges::unique(vertices);
     vertices.erase(repeated.begin(), repeated.end());
@@ -79,12 +73,12 @@ Array<Vertex, Vec3> carried_along(const Mesh& before, const Mesh& current, Regio
     if (interface.empty()) return before.position;
     const WholeMotion motion = whole_motion(before, current, interface);
     Array<Vertex, Vec3> place = current.position;
-    for (Tet t : living_tets(current, body)) {
-        for (Vertex v : current.tets[t]) {
+    for_each_cell(living_cells(current, body), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(current, cell)) {
             const Vec3 carried = motion(before.position[v]);
             if (distance(carried, current.position[v]) > rounding * motion.extent) place[v] = carried;
         }
-    }
+    });
     for (Vertex v : interface) place[v] = current.position[v];
     return place;
 }

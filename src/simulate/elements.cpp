@@ -1,55 +1,79 @@
-// Linear tetrahedra, at a time and over a step.
+// Linear tetrahedra and prisms, at a time and over a step.
 //   [Lesoinne, Farhat 1996] Geometric conservation laws for flow problems with moving boundaries and
 //     deformable meshes. CMAME 134. In three dimensions one configuration per step is not enough; two Gauss
-//     points are.
+//     points are: the cofactors of the Jacobian are quadratic in time, for prisms too.
+//   [Strang, Fix 1973] An analysis of the finite element method: rules for triangles, the patch test.
 #include "simulate/elements.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace kropla {
 namespace {
-
-using Sides = std::array<Vec3, 3>;  // from corner 0 to 1, 2, 3
-
-// The two Gauss points of the interval 0 ... 1, each of weight one half.
-constexpr std::array<double, 2> gauss_points = {0.5 - 0.5 * std::numbers::inv_sqrt3,
-                                                0.5 + 0.5 * std::numbers::inv_sqrt3};
-
-Sides sides(const Corners& x) {
-    return {x[1] - x[0], x[2] - x[0], x[3] - x[0]};
-}
-
-std::array<Vec3, 4> volume_gradient(const Sides& s) {
-    const Vec3 g1 = cross(s[1], s[2]) / 6, g2 = cross(s[2], s[0]) / 6, g3 = cross(s[0], s[1]) / 6;
-    return {-(g1 + g2 + g3), g1, g2, g3};
-}
 
 Vec3 between(const Vec3& a, const Vec3& b, double s) {
     return (1 - s) * a + s * b;
 }
 
-}  // namespace
-
-Corners corners(const Mesh& mesh, Tet t) {
-    const auto& v = mesh.tets[t];
-    return {mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]], mesh.position[v[3]]};
+/// Seen from corner 0.
+template <std::size_t n>
+Corners<n> from_first(const Corners<n>& x) {
+    Corners<n> r;
+    for (std::size_t i = 0; i < n; ++i) r[i] = x[i] - x[0];
+    return r;
 }
 
-LinearTet linear_tet(const Corners& x) {
-    const Sides s = sides(x);
-    return {determinant(s[0], s[1], s[2]) / 6, volume_gradient(s)};
-}
-
-std::array<Vec3, 4> mean_volume_gradient(const Corners& x0, const Corners& x1) {
-    const Sides s0 = sides(x0), s1 = sides(x1);
-    std::array<Vec3, 4> mean = {};
+template <std::size_t n>
+VolumeGradients<n> mean_over_step(const Corners<n>& x0, const Corners<n>& x1) {
+    const Corners<n> r0 = from_first(x0), r1 = from_first(x1);
+    VolumeGradients<n> mean = {};
     for (double time : gauss_points) {
-        const auto g = volume_gradient({between(s0[0], s1[0], time), between(s0[1], s1[1], time),
-                                        between(s0[2], s1[2], time)});
-        for (std::size_t i = 0; i < 4; ++i) mean[i] += 0.5 * g[i];
+        Corners<n> r;
+        for (std::size_t i = 0; i < n; ++i) r[i] = between(r0[i], r1[i], time);
+        const CellPoints<n> points = cell_points(r);
+        for (std::size_t k = 0; k < points.size(); ++k)
+            for (std::size_t i = 0; i < n; ++i) mean[k][i] += 0.5 * points[k].volume_gradient[i];
     }
     return mean;
+}
+
+}  // namespace
+
+CellPoint<4> linear_tet(const Corners<4>& x) {
+    const Vec3 a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
+    const Vec3 g1 = cross(b, c) / 6, g2 = cross(c, a) / 6, g3 = cross(a, b) / 6;
+    return {determinant(a, b, c) / 6, {-(g1 + g2 + g3), g1, g2, g3}};
+}
+
+CellPoints<4> cell_points(const Corners<4>& x) {
+    return {linear_tet(x)};
+}
+
+CellPoints<6> cell_points(const Corners<6>& x) {
+    constexpr double weight = 1.0 / 12;  // the reference prism has volume one half
+    CellPoints<6> points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const PrismPoint at = prism_point(k);
+        const Vec3 a = between(x[1] - x[0], x[4] - x[3], at.height);
+        const Vec3 b = between(x[2] - x[0], x[5] - x[3], at.height);
+        Vec3 up;
+        for (std::size_t i = 0; i < 3; ++i) up += at.triangle[i] * (x[i + 3] - x[i]);
+        const Vec3 g1 = weight * cross(b, up), g2 = weight * cross(up, a), rise = weight * cross(a, b);
+        const std::array<Vec3, 3> in_triangle = {-(g1 + g2), g1, g2};
+        points[k].volume = dot(up, rise);
+        for (std::size_t i = 0; i < 3; ++i) {
+            points[k].volume_gradient[i] = (1 - at.height) * in_triangle[i] - at.triangle[i] * rise;
+            points[k].volume_gradient[i + 3] = at.height * in_triangle[i] + at.triangle[i] * rise;
+        }
+    }
+    return points;
+}
+
+VolumeGradients<4> mean_volume_gradients(const Corners<4>& x0, const Corners<4>& x1) {
+    return mean_over_step(x0, x1);
+}
+
+VolumeGradients<6> mean_volume_gradients(const Corners<6>& x0, const Corners<6>& x1) {
+    return mean_over_step(x0, x1);
 }
 
 Vec3 mean_area_vector(const std::array<Vec3, 3>& x0, const std::array<Vec3, 3>& x1) {

@@ -1,32 +1,136 @@
 #pragma once
 
-#include "mesh/mesh.h"
+#include "simulate/cells.h"
 
 #include <array>
+#include <cstddef>
+#include <numbers>
 
 namespace kropla {
 
-/// A tet as the linear element sees it. Linear shape functions have constant gradients: grad phi_i is
-/// volume_gradient[i] / volume, and volume_gradient[i] = dV/dx_i, a third of the area vector of the facet
-/// opposite corner i, pointing to that corner. The four sum to zero.
-struct LinearTet {
-    double volume;                          // [m^3]
-    std::array<Vec3, 4> volume_gradient;    // [m^2]
+// Shape functions of tets (linear) and prisms (linear in the triangle, linear along the column), by points of
+// quadrature. A tet has a single point, as its gradients are constant. A prism has 3 x 2 Gauss points: the integrals
+// of phi_i, of grad phi_i and of w.grad phi_i (w a velocity given at the corners) are exact, as their integrands are
+// polynomials in the coordinates of the reference prism, at most quadratic in the triangle and cubic along the column:
+// det J and the cofactors of J are (1, 2), (1, 1) or (0, 2). Products phi_i phi_j are exact on prisms that are not
+// distorted; elsewhere their sums over j are.
+
+/// The places of the corners of a cell [m], numbered as in mesh/cells.h.
+template <std::size_t n>
+using Corners = std::array<Vec3, n>;
+
+template <class Cell>
+[[nodiscard]] auto corners(const Array<Vertex, Vec3>& position, const Mesh& mesh, const Cell& cell) {
+    const auto v = cell_vertices(mesh, cell);
+    Corners<std::tuple_size_v<decltype(v)>> x;
+    for (std::size_t i = 0; i < v.size(); ++i) x[i] = position[v[i]];
+    return x;
+}
+template <class Cell>
+[[nodiscard]] auto corners(const Mesh& mesh, const Cell& cell) {
+    return corners(mesh.position, mesh, cell);
+}
+
+template <std::size_t n>
+inline constexpr std::size_t points_of_cell = n == 4 ? 1 : 6;
+
+/// What is known of a cell's shape functions at a point, for the part of the cell it stands for.
+template <std::size_t n>
+struct CellPoint {
+    double volume;                        // [m^3]
+    std::array<Vec3, n> volume_gradient;  // [m^2] volume times grad phi_i; they sum to zero
 };
+template <std::size_t n>
+using CellPoints = std::array<CellPoint<n>, points_of_cell<n>>;
 
-/// The places of four corners [m], as in Mesh.
-using Corners = std::array<Vec3, 4>;
-[[nodiscard]] Corners corners(const Mesh& mesh, Tet t);
+/// In terms of differences to corner 0 alone, so that the rounding error is relative to the cell's size.
+[[nodiscard]] CellPoints<4> cell_points(const Corners<4>& x);
+[[nodiscard]] CellPoints<6> cell_points(const Corners<6>& x);
 
-/// In terms of differences to corner 0 alone, so that the rounding error is relative to the tet's size.
-[[nodiscard]] LinearTet linear_tet(const Corners& x);
+/// The only point of a tet: its volume and dV/dx_i, a third of the area vector of the facet opposite corner i,
+/// pointing to that corner.
+[[nodiscard]] CellPoint<4> linear_tet(const Corners<4>& x);
 
-/// The mean over a step of volume_gradient, while the corners go straight from `x0` to `x1`. Exact: the
-/// integrand is quadratic in time and two Gauss points integrate cubics. So the volume swept is the volume
-/// gained: sum (x1_i - x0_i) . mean_i = V1 - V0, the geometric conservation law of [Lesoinne, Farhat 1996].
-[[nodiscard]] std::array<Vec3, 4> mean_volume_gradient(const Corners& x0, const Corners& x1);
+template <std::size_t n>
+[[nodiscard]] double total_volume(const CellPoints<n>& points) {
+    double sum = 0;
+    for (const CellPoint<n>& point : points) sum += point.volume;
+    return sum;
+}
+
+/// The gradient at a point of the field with these values at the corners.
+template <std::size_t n>
+[[nodiscard]] Vec3 gradient(const CellPoint<n>& point, const std::array<double, n>& values) {
+    Vec3 sum;
+    for (std::size_t i = 0; i < n; ++i) sum += values[i] / point.volume * point.volume_gradient[i];
+    return sum;
+}
+
+/// The means over a step of the points' volume_gradient, while the corners go straight from `x0` to `x1`. Exact: the
+/// integrand is quadratic in time and two Gauss points integrate cubics. So the volume swept is the volume gained:
+/// sum (x1_i - x0_i) . mean_i = V1 - V0, the geometric conservation law of [Lesoinne, Farhat 1996].
+template <std::size_t n>
+using VolumeGradients = std::array<std::array<Vec3, n>, points_of_cell<n>>;
+[[nodiscard]] VolumeGradients<4> mean_volume_gradients(const Corners<4>& x0, const Corners<4>& x1);
+[[nodiscard]] VolumeGradients<6> mean_volume_gradients(const Corners<6>& x0, const Corners<6>& x1);
 
 /// The mean over a step of the area vector [m^2] of the triangle whose corners go straight from `x0` to `x1`.
 [[nodiscard]] Vec3 mean_area_vector(const std::array<Vec3, 3>& x0, const std::array<Vec3, 3>& x1);
+
+/// The means over the part of the cell that a point stands for: at the point itself in a prism.
+template <std::size_t n>
+struct ShapeMeans {
+    std::array<double, n> value = {};                     // of phi_i
+    std::array<std::array<double, n>, n> product = {};  // of phi_i phi_j
+};
+
+/// The two Gauss points of the interval 0 ... 1, each of weight one half.
+inline constexpr std::array<double, 2> gauss_points = {0.5 - 0.5 * std::numbers::inv_sqrt3,
+                                                       0.5 + 0.5 * std::numbers::inv_sqrt3};
+
+/// Where point k of a prism stands: barycentric coordinates in its triangle, and the height, 0 ... 1. The three points
+/// of a triangle, each of weight one third, integrate quadratics [Strang, Fix 1973].
+struct PrismPoint {
+    std::array<double, 3> triangle;
+    double height;
+};
+[[nodiscard]] constexpr PrismPoint prism_point(std::size_t k) {
+    PrismPoint point{{1.0 / 6, 1.0 / 6, 1.0 / 6}, gauss_points[k / 3]};
+    point.triangle[k % 3] = 2.0 / 3;
+    return point;
+}
+[[nodiscard]] constexpr std::array<double, 6> prism_shape(const PrismPoint& at) {
+    std::array<double, 6> value = {};
+    for (std::size_t a = 0; a < 3; ++a) {
+        value[a] = at.triangle[a] * (1 - at.height);
+        value[a + 3] = at.triangle[a] * at.height;
+    }
+    return value;
+}
+
+template <std::size_t n>
+[[nodiscard]] constexpr std::array<ShapeMeans<n>, points_of_cell<n>> make_shape_means() {
+    std::array<ShapeMeans<n>, points_of_cell<n>> means = {};
+    for (std::size_t k = 0; k < means.size(); ++k) {
+        if constexpr (n == 4) means[k].value = {0.25, 0.25, 0.25, 0.25};
+        else means[k].value = prism_shape(prism_point(k));
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < n; ++j)
+                means[k].product[i][j] =
+                    n == 4 ? (i == j ? 0.1 : 0.05) : means[k].value[i] * means[k].value[j];
+    }
+    return means;
+}
+/// Per point of a cell with n corners.
+template <std::size_t n>
+inline constexpr std::array<ShapeMeans<n>, points_of_cell<n>> shape_means = make_shape_means<n>();
+
+/// The mean, for point k, of what has these values at the corners.
+template <std::size_t n, class T>
+[[nodiscard]] T mean_value(std::size_t k, const std::array<T, n>& values) {
+    T sum = {};
+    for (std::size_t i = 0; i < n; ++i) sum += shape_means<n>[k].value[i] * values[i];
+    return sum;
+}
 
 }  // namespace kropla

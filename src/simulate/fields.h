@@ -7,7 +7,8 @@
 
 namespace kropla {
 
-/// A scalar per vertex of a mesh, linear in every tet.
+/// A scalar per vertex of a mesh, linear in every tet; in a prism linear in the triangle and along
+/// the column.
 struct NodalField {
     std::string name;  // as in output: "temperature"
     std::string unit;  // "K"

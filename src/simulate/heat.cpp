@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "simulate/elements.h"
-#include "simulate/partition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +42,7 @@ void check_region(const HeatRegion& region, std::size_t number) {
 
 void check_heat(const HeatOptions& options, const Mesh& mesh) {
     for (std::size_t i = 0; i < options.regions.size(); ++i) check_region(options.regions[i], i);
-    std::size_t needed = 0;
-    for (Tet t : living_tets(mesh))
-        needed = std::max(needed, static_cast<std::size_t>(mesh.region[t].value) + 1);
+    const std::size_t needed = count_regions(mesh);
     if (options.regions.size() < needed) {
         throw CaseError("heat: the mesh has " + std::to_string(needed) +
                         " regions, materials are given for " + std::to_string(options.regions.size()));
@@ -63,9 +60,9 @@ NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
     check_heat(options, mesh);
     NodalField field{"temperature", "K", Array<Vertex, double>(mesh.position.size(), 0.0)};
     Array<Vertex, Region> region(mesh.position.size());
-    for (Tet t : living_tets(mesh)) {
-        for (Vertex v : mesh.tets[t]) region[v] = std::max(region[v], mesh.region[t]);
-    }
+    for_each_cell(living_cells(mesh), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) region[v] = std::max(region[v], cell_region(mesh, cell));
+    });
     for (Vertex v : mesh.position.indices()) {
         if (region[v].exists())
             field.values[v] = options.regions[static_cast<std::size_t>(region[v].value)].initial;
@@ -76,12 +73,13 @@ NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
 double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,
               Region only) {
     double sum = 0;
-    for (Tet t : living_tets(mesh, only)) {
-        const HeatMaterial& m = options.regions[static_cast<std::size_t>(mesh.region[t].value)].material;
-        double corners_sum = 0;
-        for (Vertex v : mesh.tets[t]) corners_sum += temperature[v];
-        sum += m.density * m.specific_heat * linear_tet(corners(mesh, t)).volume * corners_sum / 4;
-    }
+    for_each_cell(living_cells(mesh, only), [&](const auto& cell) {
+        const auto& m = options.regions[static_cast<std::size_t>(cell_region(mesh, cell).value)].material;
+        const auto values = at_corners(temperature, cell_vertices(mesh, cell));
+        const auto points = cell_points(corners(mesh, cell));
+        for (std::size_t k = 0; k < points.size(); ++k)
+            sum += m.density * m.specific_heat * points[k].volume * mean_value(k, values);
+    });
     return sum;
 }
 

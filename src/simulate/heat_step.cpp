@@ -1,15 +1,11 @@
-// One step of the heat equation: assembly and solution of the system derived in heat.h.
-//   [Donea, Huerta 2003] Finite element methods for flow problems: the conservative ALE form.
-//   [Brooks, Hughes 1982] Streamline upwind/Petrov-Galerkin formulations. CMAME 32: SUPG.
-//   [Shakib, Hughes, Johan 1991] A new finite element formulation for computational fluid dynamics: X. CMAME
-//     89: tau, here with the tet's length along the flow of [Tezduyar, Park 1986] CMAME 59.
-#include "simulate/heat.h"
+// One step of the heat equation: assembly and solution of the system derived in heat.h, from what the cells
+// add to it (heat_cell.h), the fluxes and the values at the boundary.
 
 #include "base/error.h"
 #include "mesh/cells.h"
 #include "simulate/carried.h"
-#include "simulate/elements.h"
 #include "simulate/flow_potential.h"
+#include "simulate/heat_cell.h"
 #include "simulate/linear_system.h"
 
 #include <cmath>
@@ -18,24 +14,6 @@
 
 namespace kropla {
 namespace {
-
-/// All that a tet needs to know of the step.
-struct StepData {
-    const Mesh& before;
-    const Mesh& current;
-    const HeatOptions& options;
-    const Array<Vertex, double>& old_temperature;
-    const Array<Tet, Vec3>& flow;               // of material at rest, per tet [m/s]
-    std::vector<Array<Vertex, Vec3>> carried;   // per region: empty, or of a body, see start_of [m]
-    std::vector<Array<Vertex, double>> source;  // per region: empty, or at its vertices [W/m^3]
-    double dt;                                  // [s]
-};
-
-/// What a tet adds to the rows of its corners.
-struct TetSystem {
-    std::array<std::array<double, 4>, 4> matrix = {};  // [J/K]
-    std::array<double, 4> right = {};                  // [J]
-};
 
 double evaluate(const Quantity& quantity, const Vec3& x, double t, const char* what) {
     const double value = quantity(x, t);
@@ -46,127 +24,26 @@ double evaluate(const Quantity& quantity, const Vec3& x, double t, const char* w
     throw CaseError(message.str());
 }
 
-const HeatRegion& region_of(const StepData& step, Tet t) {
-    return step.options.regions[static_cast<std::size_t>(step.current.region[t].value)];
-}
-
-std::array<double, 4> at_corners(const Array<Vertex, double>& values, const std::array<Vertex, 4>& v) {
-    if (values.empty()) return {};
-    return {values[v[0]], values[v[1]], values[v[2]], values[v[3]]};
-}
-
-double sum(const std::array<double, 4>& a) {
-    return a[0] + a[1] + a[2] + a[3];
-}
-
-/// The intrinsic time [s] of SUPG, for the speed |v| and its components v.grad phi_i, diffusivity [m^2/s] and
-/// step.
-double intrinsic_time(double speed, double sum_of_components, double diffusivity, double dt) {
-    if (!(sum_of_components > 0)) return 0;
-    const double length = 2 * speed / sum_of_components;
-    const double transient = 2 / dt, convective = 2 * speed / length;
-    const double diffusive = 12 * diffusivity / (length * length);
-    return 1 / std::sqrt(transient * transient + convective * convective + diffusive * diffusive);
-}
-
-/// Mass, conduction and source: the terms that do not know of motion but for the volume's change. In the
-/// matrix the consistent mass and L add up to the lumped one; on the old temperature they act with the old
-/// and the new volume.
-TetSystem conduction(const StepData& step, Tet t, const LinearTet& tet, const std::array<double, 4>& source) {
-    const HeatMaterial& m = region_of(step, t).material;
-    const double capacity = m.density * m.specific_heat;
-    const double old_volume = linear_tet(corners(step.before, t)).volume;
-    const auto old = at_corners(step.old_temperature, step.current.tets[t]);
-    TetSystem system;
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            system.matrix[i][j] = step.dt * m.conductivity / tet.volume *
-                                  dot(tet.volume_gradient[i], tet.volume_gradient[j]);
-        }
-        system.matrix[i][i] += capacity * tet.volume / 4;
-        const double kept = old_volume * (old[i] + sum(old)) + tet.volume * (4 * old[i] - sum(old));
-        system.right[i] = capacity * kept / 20 + step.dt * tet.volume * source[i] / 4;
-    }
-    return system;
-}
-
-/// SUPG, for the velocity `v` [m/s] of the material relative to the mesh.
-void add_upwinding(const StepData& step, Tet t, const LinearTet& tet, const Vec3& v,
-                   const std::array<double, 4>& source, TetSystem& system) {
-    const HeatMaterial& m = region_of(step, t).material;
-    const double capacity = m.density * m.specific_heat;
-    std::array<double, 4> along;  // V v.grad phi_i [m^3/s]
-    double sum_along = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        along[i] = dot(v, tet.volume_gradient[i]);
-        sum_along += std::abs(along[i]) / tet.volume;
-    }
-    const double tau = intrinsic_time(norm(v), sum_along, m.conductivity / capacity, step.dt);
-    const double known =
-        capacity * sum(at_corners(step.old_temperature, step.current.tets[t])) + step.dt * sum(source);
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            system.matrix[i][j] += tau * capacity * along[i] * (0.25 + step.dt * along[j] / tet.volume);
-        }
-        system.right[i] += tau * along[i] * known / 4;
-    }
-}
-
-/// Where the corners of the tet came from, for one who goes with its body as a whole, if it is of a body.
-Corners start_of(const StepData& step, Tet t) {
-    const auto& carried = step.carried[static_cast<std::size_t>(step.current.region[t].value)];
-    if (carried.empty()) return corners(step.before, t);
-    const auto& v = step.current.tets[t];
-    return {carried[v[0]], carried[v[1]], carried[v[2]], carried[v[3]]};
-}
-
-/// What the material and the mesh carry past each other: - dt C, and its upwinding.
-void add_convection(const StepData& step, Tet t, const LinearTet& tet, const std::array<double, 4>& source,
-                    TetSystem& system) {
-    const HeatMaterial& m = region_of(step, t).material;
-    const Corners x0 = start_of(step, t), x1 = corners(step.current, t);
-    std::array<Vec3, 4> moved;  // dt w
-    Vec3 moved_sum;
-    for (std::size_t i = 0; i < 4; ++i) moved_sum += moved[i] = x1[i] - x0[i];
-    const Vec3 flow = step.flow[t];
-    if (x0 == x1 && flow == Vec3{}) return;
-    const auto mean_gradient = mean_volume_gradient(x0, x1);
-    for (std::size_t i = 0; i < 4; ++i) {
-        const double by_flow = step.dt * dot(flow, tet.volume_gradient[i]) / 4;
-        for (std::size_t j = 0; j < 4; ++j) {
-            const double by_mesh = dot(moved[j] + moved_sum, mean_gradient[i]) / 20;
-            const double by_lumping = dot(4.0 * moved[i] - moved_sum, tet.volume_gradient[j]) / 20;
-            system.matrix[i][j] -= m.density * m.specific_heat * (by_flow - by_mesh + by_lumping);
-        }
-    }
-    add_upwinding(step, t, tet, flow - moved_sum / (4 * step.dt), source, system);
-}
-
-TetSystem tet_system(const StepData& step, Tet t) {
-    const auto region = static_cast<std::size_t>(step.current.region[t].value);
-    const auto source = at_corners(step.source[region], step.current.tets[t]);
-    const LinearTet tet = linear_tet(corners(step.current, t));
-    TetSystem system = conduction(step, t, tet, source);
-    add_convection(step, t, tet, source, system);
-    return system;
+const Quantity& source_of(const HeatOptions& options, Region region) {
+    return options.regions[static_cast<std::size_t>(region.value)].source;
 }
 
 /// The sources of each region at the vertices of `cells`.
-std::vector<Array<Vertex, double>> evaluate_sources(const Mesh& mesh, const std::vector<Tet>& cells,
-                                                    const HeatOptions& options, double t) {
+Array<Region, Array<Vertex, double>> evaluate_sources(const Mesh& mesh, const Cells& cells,
+                                                      const HeatOptions& options, double t) {
     const double unknown = std::nan("");
-    std::vector<Array<Vertex, double>> source(options.regions.size());
-    for (std::size_t r = 0; r < source.size(); ++r) {
-        if (options.regions[r].source) source[r] = Array<Vertex, double>(mesh.position.size(), unknown);
+    Array<Region, Array<Vertex, double>> source(options.regions.size());
+    for (Region r : source.indices()) {
+        if (source_of(options, r)) source[r] = Array<Vertex, double>(mesh.position.size(), unknown);
     }
-    for (Tet cell : cells) {
-        const auto r = static_cast<std::size_t>(mesh.region[cell].value);
-        if (source[r].empty()) continue;
-        for (Vertex v : mesh.tets[cell]) {
+    for_each_cell(cells, [&](const auto& cell) {
+        const Region r = cell_region(mesh, cell);
+        if (source[r].empty()) return;
+        for (Vertex v : cell_vertices(mesh, cell)) {
             if (!std::isnan(source[r][v])) continue;
-            source[r][v] = evaluate(options.regions[r].source, mesh.position[v], t, "source");
+            source[r][v] = evaluate(source_of(options, r), mesh.position[v], t, "source");
         }
-    }
+    });
     return source;
 }
 
@@ -203,7 +80,7 @@ Array<Vertex, int> faces_with_values(const Mesh& mesh, const HeatOptions& option
             if (at < 0 || static_cast<int>(face) < at) at = static_cast<int>(face);
         }
     };
-    for_each_facet(mesh, living_tets(mesh), options, HeatFace::Kind::value, note);
+    for_each_facet(mesh, living_cells(mesh).tets, options, HeatFace::Kind::value, note);
     return face_at;
 }
 
@@ -219,24 +96,21 @@ void fix_values(const Mesh& mesh, const HeatOptions& options, double time, const
 }
 
 /// Quantities are evaluated everywhere, not on the rank's cells alone: if one is not finite, all ranks throw.
-LinearSystem heat_system(const StepData& step, const std::vector<Tet>& cells, const Numbering& numbering,
-                         int rank, double end) {
-    const std::vector<Tet> mine = cells_of_rank(step.current, cells, numbering, rank);
+LinearSystem heat_system(const HeatStep& step, const Cells& cells, const Numbering& numbering, int rank,
+                         double end) {
+    const Cells mine = cells_of_rank(step.current, cells, numbering, rank);
     LinearSystem system = empty_system(step.current, mine, numbering, rank);
-    for (Tet t : mine) {
-        const TetSystem part = tet_system(step, t);
-        for (std::size_t i = 0; i < 4; ++i) {
-            const int row = numbering.row[step.current.tets[t][i]];
-            add_to_right(system, row, part.right[i]);
-            for (std::size_t j = 0; j < 4; ++j) {
-                add_to(system, row, numbering.row[step.current.tets[t][j]], part.matrix[i][j]);
-            }
-        }
-    }
+    for_each_cell(mine, [&](const auto& cell) {
+        const auto part = cell_system(step, cell);
+        const auto vertices = cell_vertices(step.current, cell);
+        add_to(system, numbering, vertices, part.matrix);
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            add_to_right(system, numbering.row[vertices[i]], part.right[i]);
+    });
     const auto flux = [&](Tet t, std::size_t corner, std::size_t face) {
         add_flux(step.current, t, corner, step.options.faces[face].quantity, end, step.dt, numbering, system);
     };
-    for_each_facet(step.current, cells, step.options, HeatFace::Kind::flux, flux);
+    for_each_facet(step.current, cells.tets, step.options, HeatFace::Kind::flux, flux);
     for (std::size_t r = 0; r < system.guess.size(); ++r) {
         const auto row = static_cast<std::size_t>(system.first_row) + r;
         system.guess[r] = step.old_temperature[numbering.vertex[row]];
@@ -253,11 +127,11 @@ std::vector<Region> regions_that(Carried move, const HeatOptions& options) {
     return regions;
 }
 
-std::vector<Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& current,
-                                              const HeatOptions& options) {
-    std::vector<Array<Vertex, Vec3>> carried(options.regions.size());
+Array<Region, Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& current,
+                                                const HeatOptions& options) {
+    Array<Region, Array<Vertex, Vec3>> carried(options.regions.size());
     for (Region body : regions_that(Carried::with_mesh, options)) {
-        carried[static_cast<std::size_t>(body.value)] = carried_along(before, current, body);
+        carried[body] = carried_along(before, current, body);
     }
     return carried;
 }
@@ -270,13 +144,13 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
     if (!(dt > 0)) throw CaseError("heat: the step must be positive, got " + std::to_string(dt) + " s");
     const DisplacedFlow flow =
         solve_displaced_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt);
-    const std::vector<Tet> cells = living_tets(current);
+    const Cells cells = living_cells(current);
     const Numbering numbering = number_vertices(current, cells, ranks.count);
-    const StepData step{.before = before,
+    const HeatStep step{.before = before,
                         .current = current,
                         .options = options,
                         .old_temperature = temperature.values,
-                        .flow = flow.velocity,
+                        .potential = flow.potential,
                         .carried = carry_bodies(before, current, options),
                         .source = evaluate_sources(current, cells, options, t + dt),
                         .dt = dt};

@@ -17,16 +17,17 @@ bool owns(const LinearSystem& system, int row) {
 }
 
 /// Per owned row the rows it is coupled to, itself first, in no order, with repetitions.
-std::vector<std::vector<PetscInt>> coupled_rows(const Mesh& mesh, const std::vector<Tet>& cells,
+std::vector<std::vector<PetscInt>> coupled_rows(const Mesh& mesh, const Cells& cells,
                                                 const Numbering& numbering, int first, int rows) {
     std::vector<std::vector<PetscInt>> coupled(static_cast<std::size_t>(rows));
-    for (Tet t : cells) {
-        for (Vertex a : mesh.tets[t]) {
+    for_each_cell(cells, [&](const auto& cell) {
+        const auto vertices = cell_vertices(mesh, cell);
+        for (Vertex a : vertices) {
             const int r = numbering.row[a] - first;
             if (r < 0 || r >= rows) continue;
-            for (Vertex b : mesh.tets[t]) coupled[static_cast<std::size_t>(r)].push_back(numbering.row[b]);
+            for (Vertex b : vertices) coupled[static_cast<std::size_t>(r)].push_back(numbering.row[b]);
         }
-    }
+    });
     return coupled;
 }
 
@@ -117,8 +118,7 @@ double relative_residual(Mat matrix, Vec right, Vec unknown) {
 
 }  // namespace
 
-LinearSystem empty_system(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering,
-                          int rank) {
+LinearSystem empty_system(const Mesh& mesh, const Cells& cells, const Numbering& numbering, int rank) {
     const auto k = static_cast<std::size_t>(rank);
     LinearSystem system;
     system.first_row = numbering.first_row[k];

@@ -3,7 +3,8 @@
 #include "simulate/partition.h"
 #include "simulate/petsc.h"
 
-#include <span>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,22 @@ struct LinearSystem {
 };
 
 /// A system of zeros with a place for every pair of vertices that share one of `cells`, the rank's own.
-[[nodiscard]] LinearSystem empty_system(const Mesh& mesh, const std::vector<Tet>& cells,
-                                        const Numbering& numbering, int rank);
+[[nodiscard]] LinearSystem empty_system(const Mesh& mesh, const Cells& cells, const Numbering& numbering,
+                                        int rank);
 
 /// Adds to the place (row, column), both global numbers; rows of other ranks are passed over.
 void add_to(LinearSystem& system, int row, int column, double value);
 void add_to_right(LinearSystem& system, int row, double value);
+
+/// Adds the matrix of a cell with these vertices.
+template <std::size_t n>
+void add_to(LinearSystem& system, const Numbering& numbering, const std::array<Vertex, n>& vertices,
+            const std::array<std::array<double, n>, n>& matrix) {
+    for (std::size_t i = 0; i < n; ++i) {
+        const int row = numbering.row[vertices[i]];
+        for (std::size_t j = 0; j < n; ++j) add_to(system, row, numbering.row[vertices[j]], matrix[i][j]);
+    }
+}
 
 /// Makes the row say: unknown = value (if the rank owns it), scaled by its diagonal, which is not zero. The
 /// first guess is the value too.

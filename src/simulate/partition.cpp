@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 
 namespace kropla {
 namespace {
@@ -46,11 +47,11 @@ std::uint64_t morton_key(const Frame& frame, const Vec3& x) {
     return key;
 }
 
-std::vector<Vertex> vertices_of(const Mesh& mesh, const std::vector<Tet>& cells) {
+std::vector<Vertex> vertices_of(const Mesh& mesh, const Cells& cells) {
     Array<Vertex, char> seen(mesh.position.size(), 0);
-    for (Tet t : cells) {
-        for (Vertex v : mesh.tets[t]) seen[v] = 1;
-    }
+    for_each_cell(cells, [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) seen[v] = 1;
+    });
     std::vector<Vertex> vertices;
     for (Vertex v : mesh.position.indices()) {
         if (seen[v]) vertices.push_back(v);
@@ -60,7 +61,7 @@ std::vector<Vertex> vertices_of(const Mesh& mesh, const std::vector<Tet>& cells)
 
 }  // namespace
 
-Numbering number_vertices(const Mesh& mesh, const std::vector<Tet>& cells, int ranks) {
+Numbering number_vertices(const Mesh& mesh, const Cells& cells, int ranks) {
     Numbering numbering{Array<Vertex, int>(mesh.position.size(), -1), vertices_of(mesh, cells), {}};
     const Frame frame = frame_of(mesh, numbering.vertex);
     std::vector<std::pair<std::uint64_t, Vertex>> order;
@@ -77,22 +78,14 @@ Numbering number_vertices(const Mesh& mesh, const std::vector<Tet>& cells, int r
     return numbering;
 }
 
-std::vector<Tet> living_tets(const Mesh& mesh, Region only) {
-    std::vector<Tet> cells;
-    for (Tet t : mesh.tets.indices()) {
-        if (alive(mesh, t) && (!only.exists() || mesh.region[t] == only)) cells.push_back(t);
-    }
-    return cells;
-}
-
-std::vector<Tet> cells_of_rank(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering,
-                               int rank) {
-    std::vector<Tet> mine;
-    for (Tet t : cells) {
-        const auto& v = mesh.tets[t];
-        if (std::ranges::any_of(v, [&](Vertex a) { return numbering.owns(rank, numbering.row[a]); }))
-            mine.push_back(t);
-    }
+Cells cells_of_rank(const Mesh& mesh, const Cells& cells, const Numbering& numbering, int rank) {
+    const auto is_mine = [&](const auto& cell) {
+        const auto owned = [&](Vertex v) { return numbering.owns(rank, numbering.row[v]); };
+        return std::ranges::any_of(cell_vertices(mesh, cell), owned);
+    };
+    Cells mine;
+    std::ranges::copy_if(cells.tets, std::back_inserter(mine.tets), is_mine);
+    std::ranges::copy_if(cells.prisms, std::back_inserter(mine.prisms), is_mine);
     return mine;
 }
 

@@ -12,15 +12,15 @@ Vec3 random_point(Random& random) {
     return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
 }
 
-Corners random_corners(Random& random) {
+Corners<4> random_corners(Random& random) {
     return {random_point(random), random_point(random), random_point(random), random_point(random)};
 }
 
 TEST(Elements, GradientsReproduceLinearFunctions) {
     Random random{7};
     for (int trial = 0; trial < 100; ++trial) {
-        const Corners x = random_corners(random);
-        const LinearTet tet = linear_tet(x);
+        const Corners<4> x = random_corners(random);
+        const CellPoint<4> tet = linear_tet(x);
         const Vec3 slope = random_point(random);
         Vec3 gradient;
         for (std::size_t i = 0; i < 4; ++i)
@@ -32,8 +32,8 @@ TEST(Elements, GradientsReproduceLinearFunctions) {
 TEST(Elements, VolumeSweptIsVolumeGained) {
     Random random{11};
     for (int trial = 0; trial < 100; ++trial) {
-        const Corners x0 = random_corners(random), x1 = random_corners(random);
-        const auto mean = mean_volume_gradient(x0, x1);
+        const Corners<4> x0 = random_corners(random), x1 = random_corners(random);
+        const auto mean = mean_volume_gradients(x0, x1)[0];
         double swept = 0;
         for (std::size_t i = 0; i < 4; ++i) swept += dot(x1[i] - x0[i], mean[i]);
         EXPECT_NEAR(swept, linear_tet(x1).volume - linear_tet(x0).volume, 1e-14)
@@ -43,9 +43,9 @@ TEST(Elements, VolumeSweptIsVolumeGained) {
 
 TEST(Elements, MeanAreaIsThatOfTheFacetOfTheTet) {
     Random random{13};
-    const Corners x0 = random_corners(random), x1 = random_corners(random);
+    const Corners<4> x0 = random_corners(random), x1 = random_corners(random);
     const Vec3 area = mean_area_vector({x0[1], x0[2], x0[3]}, {x1[1], x1[2], x1[3]});
-    const Vec3 inwards = 3.0 * mean_volume_gradient(x0, x1)[0];  // to corner 0, away from facet 0
+    const Vec3 inwards = 3.0 * mean_volume_gradients(x0, x1)[0][0];  // to corner 0, away from facet 0
     EXPECT_LT(distance(area, -inwards), 1e-14);
 }
 

@@ -1,7 +1,6 @@
 #include "meshes.h"
 #include "session.h"
 #include "simulate/elements.h"
-#include "simulate/partition.h"
 
 #include <gtest/gtest.h>
 
@@ -62,14 +61,11 @@ void name_inner_and_outer(Mesh& mesh, double between) {
 /// Integral of |grad T|^2: for conductivity 1 the heat flow times the temperature difference.
 double dissipation(const Mesh& mesh, const NodalField& field) {
     double sum = 0;
-    for (Tet t : living_tets(mesh)) {
-        const LinearTet tet = linear_tet(corners(mesh, t));
-        Vec3 gradient;
-        for (std::size_t i = 0; i < 4; ++i) {
-            gradient += field.values[mesh.tets[t][i]] / tet.volume * tet.volume_gradient[i];
-        }
-        sum += tet.volume * squared_norm(gradient);
-    }
+    for_each_cell(living_cells(mesh), [&](const auto& cell) {
+        const auto values = at_corners(field.values, cell_vertices(mesh, cell));
+        for (const auto& point : cell_points(corners(mesh, cell)))
+            sum += point.volume * squared_norm(gradient(point, values));
+    });
     return sum;
 }
 

@@ -40,7 +40,7 @@ void add_cube(const Grid& grid, const std::array<int, 3>& cube, const Array<Vert
             corner[axis] += step[axis];
             tet[k + 1] = grid.vertex(corner);
         }
-        const Corners x = {position[tet[0]], position[tet[1]], position[tet[2]], position[tet[3]]};
+        const Corners<4> x = {position[tet[0]], position[tet[1]], position[tet[2]], position[tet[3]]};
         if (linear_tet(x).volume < 0) std::swap(tet[2], tet[3]);
         tets.push_back(tet);
     }
@@ -132,7 +132,7 @@ double l2_error(const Mesh& mesh, const NodalField& field, const std::function<d
     const double near = 0.5854101966249685, far = 0.1381966011250105;  // (5 + 3 sqrt 5)/20, (5 - sqrt 5)/20
     double sum = 0;
     for (Tet t : mesh.tets.indices()) {
-        const Corners x = corners(mesh, t);
+        const Corners<4> x = corners(mesh, t);
         for (std::size_t point = 0; point < 4; ++point) {
             Vec3 place;
             double value = 0;

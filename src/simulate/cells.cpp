@@ -1,0 +1,75 @@
+// Tets and prisms of a region, and where it ends.
+#include "simulate/cells.h"
+
+#include "mesh/cells.h"
+
+#include <algorithm>
+
+namespace kropla {
+namespace {
+
+/// The layer beyond a facet of this patch, or none.
+Layer layer_beyond(const Mesh& mesh, Patch patch) {
+    if (patch.value < box_faces) return {};
+    const auto layer = static_cast<std::size_t>(patch.value - box_faces) / 2;
+    return layer < mesh.layers.size() ? Layer(layer) : Layer{};
+}
+
+/// The region across the facet opposite `corner`, or none.
+Region region_beyond(const Mesh& mesh, Tet t, std::size_t corner) {
+    if (const Tet other = mesh.neighbour[t][corner]; other.exists()) return mesh.region[other];
+    const Layer layer = layer_beyond(mesh, mesh.patch[t][corner]);
+    return layer.exists() ? layer_of(mesh, layer).region : Region{};
+}
+
+std::array<Vertex, 3> facet_of(const Mesh& mesh, Tet t, std::size_t corner) {
+    std::array<Vertex, 3> facet;
+    for (std::size_t k = 0; k < 3; ++k)
+        facet[k] = mesh.tets[t][static_cast<std::size_t>(tet_facets[corner][k])];
+    return facet;
+}
+
+/// A layer stands on its body's surface, where its region ends; beyond its shell the region goes on.
+void add_walls(const Mesh& mesh, Region region, std::vector<std::array<Vertex, 3>>& facets) {
+    for (const PrismLayer& layer : mesh.layers) {
+        if (layer.region != region) continue;
+        for (const auto& [a, b, c] : layer.triangles)
+            facets.push_back(
+                {column_vertex(layer, a, 0), column_vertex(layer, c, 0), column_vertex(layer, b, 0)});
+    }
+}
+
+}  // namespace
+
+Cells living_cells(const Mesh& mesh, Region only) {
+    const auto wanted = [only](Region region) { return !only.exists() || region == only; };
+    Cells cells;
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t) && wanted(mesh.region[t])) cells.tets.push_back(t);
+    for (const Prism& prism : all_prisms(mesh))
+        if (wanted(cell_region(mesh, prism))) cells.prisms.push_back(prism);
+    return cells;
+}
+
+std::size_t count_regions(const Mesh& mesh) {
+    Region last;
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t)) last = std::max(last, mesh.region[t]);
+    for (const PrismLayer& layer : mesh.layers) last = std::max(last, layer.region);
+    return static_cast<std::size_t>(last.value + 1);
+}
+
+RegionSurface region_surface(const Mesh& mesh, Region region) {
+    RegionSurface surface;
+    for (Tet t : living_cells(mesh, region).tets) {
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Region beyond = region_beyond(mesh, t, corner);
+            if (beyond == region) continue;
+            (beyond.exists() ? surface.interface : surface.outer).push_back(facet_of(mesh, t, corner));
+        }
+    }
+    add_walls(mesh, region, surface.interface);
+    return surface;
+}
+
+}  // namespace kropla

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "mesh/prisms.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace kropla {
+
+/// Cells to be assembled, tets and prisms. What is done with a cell is written once, for both kinds, in terms of
+/// its vertices and its region.
+struct Cells {
+    std::vector<Tet> tets;
+    std::vector<Prism> prisms;
+};
+
+/// All cells of the mesh that are no free slots, in order; or those of one region.
+[[nodiscard]] Cells living_cells(const Mesh& mesh, Region only = {});
+
+/// Calls `visit(cell)` for the tets, then for the prisms.
+template <class Visit>
+void for_each_cell(const Cells& cells, const Visit& visit) {
+    for (Tet t : cells.tets) visit(t);
+    for (const Prism& prism : cells.prisms) visit(prism);
+}
+
+[[nodiscard]] inline std::array<Vertex, 4> cell_vertices(const Mesh& mesh, Tet t) { return mesh.tets[t]; }
+[[nodiscard]] inline std::array<Vertex, 6> cell_vertices(const Mesh& mesh, const Prism& prism) {
+    return prism_vertices(mesh, prism);
+}
+[[nodiscard]] inline Region cell_region(const Mesh& mesh, Tet t) { return mesh.region[t]; }
+[[nodiscard]] inline Region cell_region(const Mesh& mesh, const Prism& prism) {
+    return layer_of(mesh, prism.layer).region;
+}
+
+/// One more than the largest number of a region that has cells; 0 if there are no cells.
+[[nodiscard]] std::size_t count_regions(const Mesh& mesh);
+
+/// Values at the vertices of a cell; zeros if there are none.
+template <std::size_t n>
+[[nodiscard]] std::array<double, n> at_corners(const Array<Vertex, double>& values,
+                                               const std::array<Vertex, n>& vertices) {
+    std::array<double, n> at = {};
+    for (std::size_t i = 0; i < n && !values.empty(); ++i) at[i] = values[vertices[i]];
+    return at;
+}
+
+/// Where a region ends: triangles with their normal (right hand) out of it. Quads of prisms lie between prisms.
+struct RegionSurface {
+    std::vector<std::array<Vertex, 3>> interface;  // to cells of another region
+    std::vector<std::array<Vertex, 3>> outer;      // of the domain
+};
+[[nodiscard]] RegionSurface region_surface(const Mesh& mesh, Region region);
+
+}  // namespace kropla

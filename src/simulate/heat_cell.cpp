@@ -1,0 +1,163 @@
+// What a cell, a tet or a prism, adds to a step of the heat equation: the terms derived in heat.h.
+//   [Donea, Huerta 2003] Finite element methods for flow problems: the conservative ALE form.
+//   [Brooks, Hughes 1982] Streamline upwind/Petrov-Galerkin formulations. CMAME 32: SUPG.
+//   [Shakib, Hughes, Johan 1991] A new finite element formulation for computational fluid dynamics: X. CMAME
+//     89: tau, here with the cell's length along the flow of [Tezduyar, Park 1986] CMAME 59.
+#include "simulate/heat_cell.h"
+
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+/// A cell of n corners during the step.
+template <std::size_t n>
+struct Cell {
+    Corners<n> x0, x1;                 // where the corners came from, for one who goes with the body, and are [m]
+    CellPoints<n> before, now;         // at the step's begin and end
+    std::array<double, n> old;         // [K]
+    std::array<double, n> source;      // [W/m^3]
+    std::array<double, n> potential;   // [m^2/s]
+    double capacity;                   // rho c [J/(m^3 K)]
+    double conductivity;               // [W/(m K)]
+    double dt;                         // [s]
+};
+
+template <std::size_t n, class Name>
+Cell<n> gather(const HeatStep& step, const Name& name) {
+    const auto v = cell_vertices(step.current, name);
+    const Region region = cell_region(step.current, name);
+    const HeatMaterial& m = step.options.regions[static_cast<std::size_t>(region.value)].material;
+    const auto& carried = step.carried[region];
+    const Corners<n> x0 = corners(step.before, name), x1 = corners(step.current, name);
+    return {.x0 = carried.empty() ? x0 : corners(carried, step.current, name),
+            .x1 = x1,
+            .before = cell_points(x0),
+            .now = cell_points(x1),
+            .old = at_corners(step.old_temperature, v),
+            .source = at_corners(step.source[region], v),
+            .potential = at_corners(step.potential[region], v),
+            .capacity = m.density * m.specific_heat,
+            .conductivity = m.conductivity,
+            .dt = step.dt};
+}
+
+/// Mass, conduction and source: the terms that do not know of motion but for the volume's change. In the
+/// matrix the consistent mass and L add up to the lumped one; on the old temperature they act with the old
+/// and the new volume.
+template <std::size_t n>
+CellSystem<n> conduction(const Cell<n>& cell) {
+    CellSystem<n> system;
+    for (std::size_t k = 0; k < cell.now.size(); ++k) {
+        const CellPoint<n>& point = cell.now[k];
+        const ShapeMeans<n>& means = shape_means<n>[k];
+        const double conducted = cell.dt * cell.conductivity / point.volume;
+        const double gained = point.volume - cell.before[k].volume;
+        for (std::size_t i = 0; i < n; ++i) {
+            double old_product = 0;
+            for (std::size_t j = 0; j < n; ++j) {
+                system.matrix[i][j] += conducted * dot(point.volume_gradient[i], point.volume_gradient[j]);
+                old_product += means.product[i][j] * cell.old[j];
+            }
+            const double lumped = point.volume * means.value[i];
+            system.matrix[i][i] += cell.capacity * lumped;
+            system.right[i] += cell.capacity * (lumped * cell.old[i] - gained * old_product) +
+                               cell.dt * lumped * cell.source[i];
+        }
+    }
+    return system;
+}
+
+/// The intrinsic time [s] of SUPG, for the speed |v| and its components v.grad phi_i, diffusivity [m^2/s] and
+/// step.
+double intrinsic_time(double speed, double sum_of_components, double diffusivity, double dt) {
+    if (!(sum_of_components > 0)) return 0;
+    const double length = 2 * speed / sum_of_components;
+    const double transient = 2 / dt, convective = 2 * speed / length;
+    const double diffusive = 12 * diffusivity / (length * length);
+    return 1 / std::sqrt(transient * transient + convective * convective + diffusive * diffusive);
+}
+
+/// The means of grad phi_i over the cell [1/m].
+template <std::size_t n>
+std::array<Vec3, n> mean_gradients(const CellPoints<n>& points) {
+    const double volume = total_volume<n>(points);
+    std::array<Vec3, n> mean = {};
+    for (const CellPoint<n>& point : points)
+        for (std::size_t i = 0; i < n; ++i) mean[i] += point.volume_gradient[i] / volume;
+    return mean;
+}
+
+/// SUPG, for the mean velocity `v` [m/s] of the material relative to the mesh.
+template <std::size_t n>
+void add_upwinding(const Cell<n>& cell, const std::array<Vec3, n>& mean_gradient, const Vec3& v,
+                   CellSystem<n>& system) {
+    double sum_along = 0;
+    for (const Vec3& g : mean_gradient) sum_along += std::abs(dot(v, g));
+    const double tau = intrinsic_time(norm(v), sum_along, cell.conductivity / cell.capacity, cell.dt);
+    for (std::size_t k = 0; k < cell.now.size(); ++k) {
+        const CellPoint<n>& point = cell.now[k];
+        std::array<double, n> along;  // the point's volume times v.grad phi_i [m^3/s]
+        for (std::size_t i = 0; i < n; ++i) along[i] = dot(v, point.volume_gradient[i]);
+        const double known = cell.capacity * mean_value(k, cell.old) + cell.dt * mean_value(k, cell.source);
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t j = 0; j < n; ++j) {
+                system.matrix[i][j] += tau * cell.capacity * along[i] *
+                                       (shape_means<n>[k].value[j] + cell.dt * along[j] / point.volume);
+            }
+            system.right[i] += tau * along[i] * known;
+        }
+    }
+}
+
+/// What the material and the mesh carry past each other: - dt C, L on what moved, and the upwinding.
+template <std::size_t n>
+void add_convection(const Cell<n>& cell, CellSystem<n>& system) {
+    const auto mean_volume_gradient = mean_volume_gradients(cell.x0, cell.x1);
+    const std::array<Vec3, n> mean_gradient = mean_gradients<n>(cell.now);
+    std::array<Vec3, n> moved;       // dt w
+    std::array<Vec3, n> lumped = {};  // L on it
+    for (std::size_t i = 0; i < n; ++i) moved[i] = cell.x1[i] - cell.x0[i];
+    Vec3 past;  // the integral of dt (u - w)
+    for (std::size_t k = 0; k < cell.now.size(); ++k) {
+        const CellPoint<n>& point = cell.now[k];
+        const ShapeMeans<n>& means = shape_means<n>[k];
+        const Vec3 flown = cell.dt * gradient(point, cell.potential);
+        past += point.volume * (flown - mean_value(k, moved));
+        for (std::size_t j = 0; j < n; ++j) {
+            Vec3 product;  // the mean of phi_j dt w
+            for (std::size_t i = 0; i < n; ++i) product += means.product[j][i] * moved[i];
+            lumped[j] += point.volume * (means.value[j] * moved[j] - product);
+            for (std::size_t i = 0; i < n; ++i) {
+                const double by_flow = means.value[j] * dot(flown, point.volume_gradient[i]);
+                system.matrix[i][j] -=
+                    cell.capacity * (by_flow - dot(product, mean_volume_gradient[k][i]));
+            }
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+            system.matrix[i][j] -= cell.capacity * dot(lumped[i], mean_gradient[j]);
+    add_upwinding(cell, mean_gradient, past / (cell.dt * total_volume<n>(cell.now)), system);
+}
+
+template <std::size_t n, class Name>
+CellSystem<n> system_of(const HeatStep& step, const Name& name) {
+    const Cell<n> cell = gather<n>(step, name);
+    CellSystem<n> system = conduction(cell);
+    const bool flows = !step.potential[cell_region(step.current, name)].empty();
+    if (flows || cell.x0 != cell.x1) add_convection(cell, system);
+    return system;
+}
+
+}  // namespace
+
+CellSystem<4> cell_system(const HeatStep& step, Tet t) {
+    return system_of<4>(step, t);
+}
+
+CellSystem<6> cell_system(const HeatStep& step, const Prism& prism) {
+    return system_of<6>(step, prism);
+}
+
+}  // namespace kropla
