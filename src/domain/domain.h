@@ -3,6 +3,7 @@
 #include "domain/shape.h"
 #include "mesh/mesh.h"
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -86,6 +87,13 @@ struct Snapshot {
 /// is outside the box, or two bodies overlap, or a gap is too narrow for the size asked (below `least_gap` surface
 /// sizes), or the surface size is too coarse for a body's curvature.
 void check_placement(const Domain& domain, double t, double least_gap);
+
+/// Throws DomainError if a body's layer is of no height or overflows, or if at time t it is thicker, as asked, than the
+/// gap to a wall or to another body with its layer, or than the body's curvature allows inside, or a gap is below
+/// `least_gap(layer)`; says which body, the gap, and the largest thickness, first height and growth that would fit.
+/// Also if there are more layers than patches for them (13). In gaps that are wider than that a layer may have to be
+/// thinner than asked: layer_room.h.
+void check_layers(const Domain& domain, double t);
 
 /// Throws DomainError if between `start` and `end`, looked at `samples` times, a motion is not finite, or takes a
 /// body out of the box or into another; says which, when and where.

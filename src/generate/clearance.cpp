@@ -2,6 +2,7 @@
 
 #include "generate/clearance.h"
 
+#include "domain/layer_room.h"
 #include "generate/box.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace kropla {
 double clearance(const Snapshot& at, const Vec3& x) {
     const double size = target_size(at, x);
     return std::min(distance_to_walls(at.box, x) - clearance_at_walls * size,
-                    distance_to_bodies(at, x) - clearance_at_bodies * size);
+                    distance_to_shells(at, x) - clearance_at_bodies * size);
 }
 
 double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x) {
@@ -24,7 +25,8 @@ double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x) {
 }
 
 double clearance_slope(const Snapshot& at) {
-    return 1 + std::max(clearance_at_walls, clearance_at_bodies) * at.size.growth;
+    const bool layered = std::ranges::any_of(at.layers, [](const auto& layer) { return layer.has_value(); });
+    return 1 + std::max(clearance_at_walls, clearance_at_bodies) * at.size.growth + (layered ? share_of_gap : 0);
 }
 
 }  // namespace kropla

@@ -1,10 +1,13 @@
 list(APPEND KROPLA_MESH_FILES
     generate/box.cpp
     generate/clearance.cpp
+    generate/conform.cpp
     generate/delaunay.cpp
     generate/delaunay_kernel.cpp
     generate/hilbert.cpp
+    generate/layers.cpp
     generate/mesh.cpp
+    generate/normals.cpp
     generate/points.cpp
     generate/relax.cpp
     generate/sampling.cpp

@@ -1,21 +1,23 @@
-// The initial mesh (paper 1.1): points, Delaunay, identification of the bodies.
+// The initial mesh (paper 1.1, 1.4): points, Delaunay, identification of the bodies, prism layers.
 //
-// A surface triangle is a facet of the Delaunay mesh if a sphere through its corners is empty. Where one is
-// not there, points in its diametral sphere are removed; where that does not do, an edge of it is split, as
-// in [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay refinement"], with the new point on the body's
-// surface. The interior of a body is then what can be reached from the inner side of its surface without
-// crossing a surface.
+// A wall and its shell are too near to each other for one Delaunay triangulation to have both as facets. So the room
+// around the shells and the inside of each layered body are triangulated by themselves, and joined by the prisms.
+//
+// Where a triangle of a surface is not a facet, points in its diametral sphere are removed; where that does not do, an
+// edge of it is split, as in [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay refinement"], with the new point
+// on the body's surface, and the columns are set up anew.
 
 #include "base/error.h"
+#include "domain/layer_room.h"
 #include "generate/box.h"
+#include "generate/conform.h"
 #include "generate/generate.h"
+#include "generate/layers.h"
 #include "generate/relax.h"
 #include "generate/skin.h"
-#include "generate/triangle.h"
 #include "mesh/cells.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -23,109 +25,74 @@ namespace kropla {
 
 namespace {
 
-/// The points of a mesh to be: the bodies' surfaces, which may be refined, and all others.
+/// The points of a mesh to be: the bodies' surfaces, which may be refined, and the others of each room: of the box,
+/// then of the inside of each body, in use where it has a layer.
 struct Draft {
-    std::vector<Surface> surfaces;
-    std::vector<Vec3> others;
+    std::vector<Surface> walls;
+    std::vector<std::vector<Vec3>> others;
 };
 
-std::vector<Vec3> all_points(const Draft& draft) {
-    std::vector<Vec3> points;
-    for (const Surface& s : draft.surfaces) points.insert(points.end(), s.points.begin(), s.points.end());
-    points.insert(points.end(), draft.others.begin(), draft.others.end());
-    return points;
+bool is_layered(const Snapshot& at, std::size_t body) { return body < at.layers.size() && at.layers[body]; }
+
+/// The room in whose tets an inner point of the box is.
+std::size_t room_of(const Snapshot& at, const Vec3& x) {
+    for (std::size_t body = 0; body < at.shapes.size(); ++body)
+        if (is_layered(at, body) && signed_distance(at.shapes[body], x) < 0) return body + 1;
+    return 0;
 }
+
+/// What bounds tets on one side of a body's wall.
+Surface bounding_surface(const Surface& wall, std::size_t body, bool inside, const Snapshot& at) {
+    const auto stacks = stacks_on(wall, body, inside, at);
+    return stacks ? shell_of(wall, *stacks) : wall;
+}
+
+/// The room without its points but those of surfaces.
+Room empty_room(const std::vector<Surface>& walls, std::size_t room, const Snapshot& at) {
+    Room made;
+    for (std::size_t body = 0; body < walls.size(); ++body) {
+        if (room != 0 && room != body + 1) continue;
+        made.surfaces.push_back(bounding_surface(walls[body], body, room != 0, at));
+        made.enclosed.push_back(region_of_body(body));
+    }
+    return made;
+}
+
+/// Is the room to be triangulated?
+bool in_use(const Snapshot& at, std::size_t room) { return room == 0 || is_layered(at, room - 1); }
 
 /// The sampled points, relaxed but for those of the surfaces.
 Draft relaxed_draft(const Snapshot& at, std::uint64_t seed) {
     constexpr int rounds = 10;
     PointSet set = sample_points(at, seed);
-    Draft draft{std::move(set.surfaces), {}};
     std::size_t fixed = 0;
-    for (const Surface& s : draft.surfaces) fixed += s.points.size();
-    relax_points(set.points, fixed, at, rounds);
-    draft.others.assign(set.points.begin() + static_cast<std::ptrdiff_t>(fixed), set.points.end());
+    for (const Surface& s : set.surfaces) fixed += s.points.size();
+    Draft draft{std::move(set.surfaces), {}};
+    draft.others.resize(draft.walls.size() + 1);
+    for (std::size_t i = fixed; i < set.points.size(); ++i)
+        draft.others[room_of(at, set.points[i])].push_back(set.points[i]);
+    for (std::size_t r = 0; r < draft.others.size(); ++r) {
+        if (!in_use(at, r)) continue;
+        Room room = empty_room(draft.walls, r, at);
+        std::vector<Vec3> points = all_points(room);
+        const auto free_from = static_cast<std::ptrdiff_t>(points.size());
+        points.insert(points.end(), draft.others[r].begin(), draft.others[r].end());
+        relax_points(points, static_cast<std::size_t>(free_from), at, rounds);
+        draft.others[r].assign(points.begin() + free_from, points.end());
+    }
     return draft;
 }
 
-/// Three vertices in a cyclic order that matters, the least first.
-using Turn = std::array<Vertex, 3>;
-Turn turn(Vertex a, Vertex b, Vertex c) {
-    Turn abc = {a, b, c};
-    std::ranges::rotate(abc, std::ranges::min_element(abc));
-    return abc;
-}
-
-struct TetFacet {
-    Turn vertices;  // counter-clockwise seen from outside the tet
-    Tet tet;
-    std::size_t corner;
+/// A room and its triangulation, all its surfaces among the facets.
+struct FilledRoom {
+    Room room;
+    Triangulation filled;
+    Array<Tet, Region> region;
 };
 
-/// The facets among the first `count` points, from both sides, sorted by their vertices.
-std::vector<TetFacet> facets_among(const Triangulation& filled, std::size_t count) {
-    std::vector<TetFacet> found;
-    const Vertex end(count);
-    for (Tet t : filled.tets.indices())
-        for (std::size_t i = 0; i < 4; ++i) {
-            const auto corner = [&](std::size_t k) {
-                return filled.tets[t][static_cast<std::size_t>(tet_facets[i][k])];
-            };
-            if (corner(0) < end && corner(1) < end && corner(2) < end)
-                found.push_back({turn(corner(0), corner(1), corner(2)), t, i});
-        }
-    std::ranges::sort(found, {}, &TetFacet::vertices);
-    return found;
-}
-
-/// Where a surface triangle was looked for: the tet on its inner side, if it is a facet.
-struct SurfaceFacet {
-    std::size_t body, triangle;
-    std::optional<TetFacet> inner;
-};
-
-std::vector<SurfaceFacet> find_surfaces(const Triangulation& filled, const std::vector<Surface>& surfaces) {
-    std::size_t count = 0;
-    for (const Surface& s : surfaces) count += s.points.size();
-    const std::vector<TetFacet> facets = facets_among(filled, count);
-    std::vector<SurfaceFacet> found;
-    std::int32_t first = 0;
-    for (std::size_t body = 0; body < surfaces.size(); ++body) {
-        for (std::size_t i = 0; i < surfaces[body].triangles.size(); ++i) {
-            const auto& [a, b, c] = surfaces[body].triangles[i];
-            const Turn sought = turn(Vertex(first + a), Vertex(first + b), Vertex(first + c));
-            const auto at = std::ranges::lower_bound(facets, sought, {}, &TetFacet::vertices);
-            const bool there = at != facets.end() && at->vertices == sought;
-            found.push_back({body, i, there ? std::optional(*at) : std::nullopt});
-        }
-        first += static_cast<std::int32_t>(surfaces[body].points.size());
-    }
-    return found;
-}
-
-/// The sphere whose centre is in the plane of a triangle and that passes through its corners.
-struct Sphere {
-    Vec3 centre;
-    double radius;
-};
-Sphere diametral_sphere(const Surface& surface, std::size_t triangle) {
-    const auto& [i, j, k] = surface.triangles[triangle];
-    const auto place = [&](int p) { return surface.points[static_cast<std::size_t>(p)]; };
-    const Vec3 centre = triangle_circumcentre(place(i), place(j), place(k));
-    return {centre, distance(centre, place(i))};
-}
-
-/// Removes the inner points in the sphere; those of the box stay. Returns how many.
-std::size_t clear_sphere(std::vector<Vec3>& others, const Box& box, const Sphere& sphere) {
-    return std::erase_if(others, [&](const Vec3& x) {
-        return distance(x, sphere.centre) <= sphere.radius && !shared_face(box, {x}).exists();
-    });
-}
-
-/// Splits the longest edges of `triangles`, all of one body, and frees the space around the new points.
-void refine_surface(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles,
-                    const Snapshot& at) {
-    Skin skin = make_skin(draft.surfaces[body], at.shapes[body].centre);
+/// Splits the longest edges of `triangles` of the body's wall, and frees the space around the new points.
+void refine_wall(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles, const Snapshot& at) {
+    Skin skin = make_skin(draft.walls[body], at.shapes[body].centre);
     const Skin before = skin;
     for (std::size_t i : triangles) {
         const Triangle triangle(i);
@@ -133,92 +100,154 @@ void refine_surface(Draft& draft, std::size_t body, const std::vector<std::size_
             continue;  // split from across an edge of it
         const Vertex added = split_longest_edge(skin, at.shapes[body], triangle);
         const double half_edge = distance(skin.points[added], skin.points[skin.triangles[triangle][0]]);
-        clear_sphere(draft.others, at.box, {skin.points[added], half_edge});
+        for (auto& others : draft.others) clear_sphere(others, at.box, {skin.points[added], half_edge});
     }
     flip_edges(skin);
-    draft.surfaces[body] = surface_of(skin);
+    draft.walls[body] = surface_of(skin);
 }
 
-/// Makes room for the surface triangles that were not found.
-void recover(Draft& draft, const std::vector<SurfaceFacet>& found, const Snapshot& at) {
+/// Makes room for the triangles of the room's surfaces that were not found.
+void recover(Draft& draft, std::size_t r, const Room& room, const std::vector<SurfaceFacet>& found,
+             const Snapshot& at) {
     std::size_t cleared = 0;
     for (const SurfaceFacet& f : found)
         if (!f.inner)
-            cleared +=
-                clear_sphere(draft.others, at.box, diametral_sphere(draft.surfaces[f.body], f.triangle));
+            cleared += clear_sphere(draft.others[r], at.box,
+                                    diametral_sphere(room.surfaces[f.surface], f.triangle));
     if (cleared > 0) return;
-    for (std::size_t body = 0; body < draft.surfaces.size(); ++body) {
+    for (std::size_t s = 0; s < room.surfaces.size(); ++s) {
         std::vector<std::size_t> missing;
         for (const SurfaceFacet& f : found)
-            if (!f.inner && f.body == body) missing.push_back(f.triangle);
-        if (!missing.empty()) refine_surface(draft, body, missing, at);
+            if (!f.inner && f.surface == s) missing.push_back(f.triangle);
+        const auto body = static_cast<std::size_t>(room.enclosed[s].value) - 1;
+        if (!missing.empty()) refine_wall(draft, body, missing, at);
     }
 }
 
-/// The region of each tet: that of the body whose surface encloses it, else the surroundings.
-Array<Tet, Region> identify_regions(const Triangulation& filled, const std::vector<SurfaceFacet>& surfaces) {
-    Array<Tet, Region> region(filled.tets.size(), surroundings);
-    Array<Tet, std::array<bool, 4>> closed(filled.tets.size());
-    std::vector<Tet> open;
-    for (const SurfaceFacet& f : surfaces) {
-        const auto& [vertices, inner, corner] = *f.inner;
-        const Tet outer = filled.neighbour[inner][corner];
-        closed[inner][corner] = true;
-        for (std::size_t i = 0; i < 4; ++i)
-            if (filled.neighbour[outer][i] == inner) closed[outer][i] = true;
-        region[inner] = region_of_body(f.body);
-        open.push_back(inner);
+/// Triangulates the room; if a surface is not among the facets, makes room for it in the draft instead.
+std::optional<FilledRoom> filled_room(Draft& draft, std::size_t r, const Snapshot& at) {
+    FilledRoom done{empty_room(draft.walls, r, at), {}, {}};
+    done.room.others = draft.others[r];
+    done.filled = triangulate(all_points(done.room));
+    const std::vector<SurfaceFacet> found = find_surfaces(done.filled, done.room);
+    if (std::ranges::any_of(found, [](const SurfaceFacet& f) { return !f.inner; })) {
+        recover(draft, r, done.room, found, at);
+        return std::nullopt;
     }
-    while (!open.empty()) {
-        const Tet t = open.back();
-        open.pop_back();
-        for (std::size_t i = 0; i < 4; ++i) {
-            const Tet next = filled.neighbour[t][i];
-            if (closed[t][i] || !next.exists() || region[next] == region[t]) continue;
-            region[next] = region[t];
-            open.push_back(next);
-        }
-    }
-    return region;
+    done.region = identify_regions(done.filled, done.room, found);
+    return done;
 }
 
-std::vector<BoundaryFacet> box_facets(const Triangulation& filled, const Array<Vertex, Vec3>& position,
-                                      const Box& box) {
-    std::vector<BoundaryFacet> facets;
+/// The rooms in use, in order, filled; empty if one could not be.
+std::vector<FilledRoom> filled_rooms(Draft& draft, const Snapshot& at) {
+    std::vector<FilledRoom> rooms;
+    bool all = true;
+    for (std::size_t r = 0; r < draft.others.size(); ++r) {
+        if (!in_use(at, r)) continue;
+        auto filled = filled_room(draft, r, at);
+        all = all && filled;
+        if (all) rooms.push_back(std::move(*filled));
+    }
+    return all ? std::move(rooms) : std::vector<FilledRoom>{};
+}
+
+/// A mesh that is put together from its rooms.
+struct Assembly {
+    Array<Vertex, Vec3> position;
+    std::vector<PrismLayer> layers;
+    std::vector<std::vector<Vertex>> inner_boundary;  // per body: the vertices that bound its tets
+    std::vector<std::vector<Vertex>> outer_boundary;  // per body: those that bound the tets around it
+    Array<Tet, std::array<Vertex, 4>> tets;
+    Array<Tet, Region> region;
+    std::vector<BoundaryFacet> boundary;
+};
+
+/// Adds the vertices above the wall of one layer, and the facets of its two patches. Returns the shell's vertices.
+std::vector<Vertex> append_layer(Assembly& a, const std::vector<Vertex>& wall, Stacks stacks) {
+    const Layer name(a.layers.size());
+    const auto step = static_cast<std::size_t>(stacks.layer.count + 1);
+    std::vector<Vertex> shell;
+    for (std::size_t i = 0; i < stacks.places.size(); ++i) {
+        stacks.layer.columns.push_back(i % step == 0 ? wall[i / step] : a.position.push_back(stacks.places[i]));
+        if (i % step == step - 1) shell.push_back(stacks.layer.columns.back());
+    }
+    for (const auto& triangle : stacks.layer.triangles) {
+        const auto of = [&](const std::vector<Vertex>& surface, std::size_t i) {
+            return surface[static_cast<std::size_t>(triangle[i])];
+        };
+        a.boundary.push_back({{of(wall, 0), of(wall, 1), of(wall, 2)}, wall_patch(name)});
+        a.boundary.push_back({{of(shell, 0), of(shell, 1), of(shell, 2)}, shell_patch(name)});
+    }
+    a.layers.push_back(std::move(stacks.layer));
+    return shell;
+}
+
+void append_walls_and_layers(Assembly& a, const std::vector<Surface>& walls, const Snapshot& at) {
+    for (std::size_t body = 0; body < walls.size(); ++body) {
+        std::vector<Vertex> wall;
+        for (const Vec3& x : walls[body].points) wall.push_back(a.position.push_back(x));
+        auto outside = stacks_on(walls[body], body, false, at), inside = stacks_on(walls[body], body, true, at);
+        a.outer_boundary.push_back(outside ? append_layer(a, wall, std::move(*outside)) : wall);
+        a.inner_boundary.push_back(inside ? append_layer(a, wall, std::move(*inside)) : wall);
+    }
+}
+
+/// The hull of the room around the bodies: the faces of the box.
+void append_box_facets(Assembly& a, const Triangulation& filled, const std::vector<Vertex>& names, const Box& box) {
     for (Tet t : filled.tets.indices())
         for (std::size_t i = 0; i < 4; ++i) {
             if (filled.neighbour[t][i].exists()) continue;
             std::array<Vertex, 3> corners;
-            for (std::size_t k = 0; k < 3; ++k)
-                corners[k] = filled.tets[t][static_cast<std::size_t>(tet_facets[i][k])];
-            facets.push_back({corners, shared_face(box, {position[corners[0]], position[corners[1]],
-                                                         position[corners[2]]})});
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vertex local = filled.tets[t][static_cast<std::size_t>(tet_facets[i][k])];
+                corners[k] = names[static_cast<std::size_t>(local.value)];
+            }
+            a.boundary.push_back(
+                {corners, shared_face(box, {a.position[corners[0]], a.position[corners[1]], a.position[corners[2]]})});
         }
-    return facets;
+}
+
+void append_room(Assembly& a, const FilledRoom& filled, bool whole_box, const Snapshot& at) {
+    std::vector<Vertex> names;
+    for (Region enclosed : filled.room.enclosed) {
+        const auto body = static_cast<std::size_t>(enclosed.value) - 1;
+        const auto& vertices = whole_box ? a.outer_boundary[body] : a.inner_boundary[body];
+        names.insert(names.end(), vertices.begin(), vertices.end());
+    }
+    for (const Vec3& x : filled.room.others) names.push_back(a.position.push_back(x));
+    for (Tet t : filled.filled.tets.indices()) {
+        const Region region = filled.region[t];
+        const bool in_layered = region != surroundings && is_layered(at, static_cast<std::size_t>(region.value) - 1);
+        if (in_layered == whole_box || (!whole_box && region == surroundings)) continue;
+        auto tet = filled.filled.tets[t];
+        for (Vertex& v : tet) v = names[static_cast<std::size_t>(v.value)];
+        a.tets.push_back(tet);
+        a.region.push_back(region);
+    }
+    if (whole_box) append_box_facets(a, filled.filled, names, at.box);
+}
+
+Mesh assembled(const std::vector<Surface>& walls, const std::vector<FilledRoom>& rooms, const Snapshot& at) {
+    Assembly a;
+    append_walls_and_layers(a, walls, at);
+    for (std::size_t i = 0; i < rooms.size(); ++i) append_room(a, rooms[i], i == 0, at);
+    Mesh mesh = make_mesh(std::move(a.position), std::move(a.tets), std::move(a.region), a.boundary);
+    for (PrismLayer& layer : a.layers) add_layer(mesh, std::move(layer));
+    return mesh;
 }
 
 }  // namespace
 
 Mesh generate_mesh(const Domain& domain, std::uint64_t seed) {
-    constexpr double least_gap =
-        0.25;  // of the surface size: R/r = 7 for the tet across on an equilateral one
+    constexpr double least_gap_in_sizes = 0.25;  // R/r = 7 for the tet across on an equilateral one
     constexpr int recoveries = 20;
-    check_placement(domain, 0, least_gap);
+    check_placement(domain, 0, least_gap_in_sizes);
+    check_layers(domain, 0);
     const Snapshot at = snapshot(domain, 0);
     Draft draft = relaxed_draft(at, seed);
     for (int i = 0; i < recoveries; ++i) {
-        const std::vector<Vec3> points = all_points(draft);
-        Triangulation filled = triangulate(points);
-        const std::vector<SurfaceFacet> surfaces = find_surfaces(filled, draft.surfaces);
-        if (std::ranges::any_of(surfaces, [](const SurfaceFacet& f) { return !f.inner; })) {
-            recover(draft, surfaces, at);
-            continue;
-        }
-        Array<Vertex, Vec3> position(points.size());
-        std::ranges::copy(points, position.begin());
-        const Array<Tet, Region> region = identify_regions(filled, surfaces);
-        const std::vector<BoundaryFacet> boundary = box_facets(filled, position, at.box);
-        return make_mesh(std::move(position), std::move(filled.tets), region, boundary);
+        const std::vector<FilledRoom> rooms = filled_rooms(draft, at);
+        if (!rooms.empty()) return assembled(draft.walls, rooms, at);
     }
     throw DomainError(
         "the bodies' surfaces cannot be made facets of the mesh; a smaller size.surface may do");

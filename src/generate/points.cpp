@@ -7,6 +7,7 @@
 #include "generate/box.h"
 #include "generate/clearance.h"
 #include "generate/generate.h"
+#include "generate/layers.h"
 #include "generate/sampling.h"
 
 namespace kropla {
@@ -37,13 +38,25 @@ std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector
                      random);
 }
 
-std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& boundary_points, Random random) {
+std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& boundary_points,
+                                const std::vector<Vec3>& shell_points, Random random) {
     const auto spacing = [&](const Vec3& x) { return spacing_inside * target_size(at, x); };
     const auto room_for = [&](const Vec3& x) { return clearance(at, x); };
     PointGrid taken;
     for (const Vec3& x : boundary_points) taken.insert(x, spacing(x));
+    for (const Vec3& x : shell_points) taken.insert(x, spacing(x));
     return fill_room(at.box, {spacing, spacing_inside * at.size.growth, room_for, clearance_slope(at)}, taken,
                      random);
+}
+
+/// The points of the shells of all layers, where tets begin.
+std::vector<Vec3> sample_shells(const Snapshot& at, const std::vector<Surface>& walls) {
+    std::vector<Vec3> points;
+    for (std::size_t body = 0; body < walls.size(); ++body)
+        for (const bool inside : {false, true})
+            if (const auto stacks = stacks_on(walls[body], body, inside, at))
+                append(points, shell_of(walls[body], *stacks).points);
+    return points;
 }
 
 }  // namespace
@@ -61,7 +74,8 @@ PointSet sample_points(const Snapshot& at, std::uint64_t seed) {
     append(set.points, edge_points);
     for (int face = 0; face < 6; ++face)
         append(set.points, sample_face(at, Patch(face), edge_points, Random{stage_seed(seed, stage++)}));
-    append(set.points, sample_inside(at, set.points, Random{stage_seed(seed, stage)}));
+    append(set.points,
+           sample_inside(at, set.points, sample_shells(at, set.surfaces), Random{stage_seed(seed, stage)}));
     return set;
 }
 

@@ -5,4 +5,5 @@ list(APPEND KROPLA_MESH_FILES
     mesh/prisms.cpp
     mesh/quality.cpp
     mesh/verify.cpp
+    mesh/verify_layers.cpp
 )

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace kropla {
 
@@ -13,6 +14,14 @@ int count_prisms(const Mesh& mesh) {
     int sum = 0;
     for (const PrismLayer& layer : mesh.layers) sum += count_prisms(layer);
     return sum;
+}
+
+void add_layer(Mesh& mesh, PrismLayer layer) {
+    const Layer name(mesh.layers.size());
+    for (Vertex v : layer.columns)
+        if (!mesh.layer_at[v].exists()) mesh.layer_at[v] = name;
+    std::erase_if(mesh.free_vertices, [&](Vertex v) { return alive(mesh, v); });
+    mesh.layers.push_back(std::move(layer));
 }
 
 std::vector<Prism> all_prisms(const Mesh& mesh) {

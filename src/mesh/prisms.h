@@ -22,6 +22,8 @@ struct Prism {
 [[nodiscard]] inline Patch wall_patch(Layer l) { return Patch(box_faces + 2 * l.value); }
 [[nodiscard]] inline Patch shell_patch(Layer l) { return Patch(box_faces + 2 * l.value + 1); }
 
+inline constexpr int most_layers = 13;  // patches go up to 31
+
 /// A vertex of a column: k = 0 on the wall ... count on the shell.
 [[nodiscard]] inline Vertex column_vertex(const PrismLayer& layer, int column, int k) {
     return layer.columns[static_cast<std::size_t>(column * (layer.count + 1) + k)];
@@ -33,6 +35,9 @@ struct Prism {
     return static_cast<int>(layer.triangles.size()) * layer.count;
 }
 [[nodiscard]] int count_prisms(const Mesh& mesh);
+
+/// Gives the mesh one more layer: its column vertices, places of `position` already, are no free slots from now on.
+void add_layer(Mesh& mesh, PrismLayer layer);
 
 /// All prisms, layer by layer, triangle by triangle, from the wall outwards.
 [[nodiscard]] std::vector<Prism> all_prisms(const Mesh& mesh);

@@ -1,6 +1,7 @@
 #include "mesh/quality.h"
 
 #include "base/tetrahedron.h"
+#include "mesh/prisms.h"
 
 #include <algorithm>
 #include <numbers>
@@ -59,6 +60,9 @@ QualitySummary summarise_quality(const Mesh& mesh, Region only) {
         summary.min_dihedral = std::min(summary.min_dihedral, least * 180 / std::numbers::pi);
         summary.max_dihedral = std::max(summary.max_dihedral, largest * 180 / std::numbers::pi);
     }
+    for (const PrismLayer& layer : mesh.layers)
+        if (!only.exists() || layer.region == only)
+            for (Vertex v : layer.columns) seen[v] = 1;
     summary.tets = static_cast<int>(ratios.size());
     summary.vertices = static_cast<int>(std::ranges::count(seen, 1));
     if (ratios.empty()) return summary;
@@ -73,6 +77,8 @@ double region_volume(const Mesh& mesh, Region region) {
     double sum = 0;
     for (Tet t : mesh.tets.indices())
         if (alive(mesh, t) && mesh.region[t] == region) sum += volume(mesh, t);
+    for (const Prism& prism : all_prisms(mesh))
+        if (layer_of(mesh, prism.layer).region == region) sum += prism_volume(prism_corners(mesh, prism));
     return sum;
 }
 

@@ -22,9 +22,10 @@ struct QualitySummary {
     double min_dihedral = 180, max_dihedral = 0;
     Tet worst;  ///< the tet of the largest aspect ratio
 };
-/// Over all tets and their vertices, or those of one region.
+/// Over all tets, and the vertices of all cells, or over those of one region.
 [[nodiscard]] QualitySummary summarise_quality(const Mesh& mesh, Region only = {});
 
-[[nodiscard]] double region_volume(const Mesh& mesh, Region region);  // [m^3]
+/// Of the tets and prisms of the region [m^3].
+[[nodiscard]] double region_volume(const Mesh& mesh, Region region);
 
 }  // namespace kropla

@@ -3,6 +3,7 @@
 #include "base/predicates.h"
 #include "mesh/quality.h"
 #include "mesh/topology.h"
+#include "mesh/verify_layers.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -31,6 +32,7 @@ std::string facet(int corner) { return "its facet opposite corner " + std::to_st
 
 std::string fault_of_sizes(const Mesh& mesh) {
     if (mesh.tet_at.size() != mesh.position.size()) return "tet_at and position differ in size";
+    if (mesh.layer_at.size() != mesh.position.size()) return "layer_at and position differ in size";
     const std::size_t n = mesh.tets.size();
     if (mesh.neighbour.size() != n || mesh.patch.size() != n || mesh.region.size() != n)
         return "the arrays of cells differ in size";
@@ -124,7 +126,7 @@ std::string fault_of_vertices(const Mesh& mesh) {
     std::vector<Tet> around;
     for (Vertex v : mesh.position.indices()) {
         const std::string name = "vertex " + std::to_string(v.value);
-        if (!alive(mesh, v)) {
+        if (!mesh.tet_at[v].exists()) {  // a free slot, or within a layer
             if (cells[v] == 0) continue;
             return name + " at " + place(mesh.position[v]) + " has cells but none is recorded";
         }
@@ -201,7 +203,7 @@ std::string fault_of_surfaces(const Mesh& mesh) {
 std::string verify(const Mesh& mesh) {
     for (const auto check : {fault_of_sizes, fault_of_indices, fault_of_orientation, fault_of_neighbours,
                              fault_of_shared_facets, fault_of_vertices, fault_of_free_slots,
-                             fault_of_surfaces})
+                             fault_of_surfaces, fault_of_layers})
         if (auto fault = check(mesh); !fault.empty()) return fault;
     return {};
 }

@@ -17,6 +17,9 @@ TEST(Verify, SizesAgree) {
     mesh.tet_at.push_back(Tet(0));
     EXPECT_EQ(verify(mesh), "tet_at and position differ in size");
     mesh = two_tets();
+    mesh.layer_at.push_back(Layer{});
+    EXPECT_EQ(verify(mesh), "layer_at and position differ in size");
+    mesh = two_tets();
     mesh.region.push_back(surroundings);
     EXPECT_EQ(verify(mesh), "the arrays of cells differ in size");
 }
@@ -119,6 +122,7 @@ TEST(Verify, AFacetHasNoThirdCell) {
     mesh.patch.push_back({Patch(0), Patch(0), Patch(0), Patch(0)});
     mesh.region.push_back(surroundings);
     mesh.tet_at.push_back(third);
+    mesh.layer_at.push_back(Layer{});
     EXPECT_NE(verify(mesh).find("share a facet but are not neighbours"), std::string::npos) << verify(mesh);
 }
 

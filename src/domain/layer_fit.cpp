@@ -1,0 +1,140 @@
+// Do the layers fit where the bodies stand at the start?
+
+#include "base/error.h"
+#include "domain/layer_room.h"
+#include "mesh/prisms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace kropla {
+
+namespace {
+
+std::string written(double value, const char* unit = " m") {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g%s", value, unit);
+    return text;
+}
+
+/// `value` > 0 with two digits, rounded down: what is advised shall really do.
+std::string rounded_down(double value, const char* unit = " m") {
+    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return written(std::floor(value / digit) * digit, unit);
+}
+
+/// The largest growth at which the layer is no thicker than `room` [m]; 0 if there is none.
+double fitting_growth(LayerOptions layer, double room) {
+    if (layer.first_height > room) return 0;
+    double fits = 0, too_much = layer.growth;
+    for (int i = 0; i < 60; ++i) {
+        layer.growth = (fits + too_much) / 2;
+        (thickness(layer) <= room ? fits : too_much) = layer.growth;
+    }
+    return fits;
+}
+
+/// "; the largest layer that fits is 3.3e-05 m thick: layer.first_height of at most 5.3e-06 m, or ..."
+std::string advice(const LayerOptions& layer, double room) {
+    std::string text = "; the largest layer that fits is " + rounded_down(room) + " thick";
+    const double height = layer.first_height * (room / thickness(layer)), growth = fitting_growth(layer, room);
+    if (height > 0) text += ", by layer.first_height of at most " + rounded_down(height);
+    if (layer.count > 1 && growth > 0)
+        text += (height > 0 ? " or" : ", by") + std::string(" layer.growth of at most ") + rounded_down(growth, "");
+    return text;
+}
+
+struct Nearby {
+    double gap;   // [m]
+    double room;  // [m] for a layer as it was asked for
+    double both;  // [m] how thick the layers in the gap would be together
+    std::string name;
+};
+
+std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t body) {
+    constexpr std::array walls = {"the wall x min", "the wall x max", "the wall y min",
+                                  "the wall y max", "the wall z min", "the wall z max"};
+    const double own = thickness(*at.layers[body]);
+    const Bounds held = bounds(at.shapes[body]);
+    std::vector<Nearby> found;
+    for (int wall = 0; wall < 6; ++wall) {
+        const int axis = wall / 2;
+        const double gap = wall % 2 == 0 ? held.min[axis] - at.box.min[axis] : at.box.max[axis] - held.max[axis];
+        found.push_back({gap, share_of_gap * gap, own, walls[static_cast<std::size_t>(wall)]});
+    }
+    for (std::size_t other = 0; other < at.shapes.size(); ++other) {
+        if (other == body) continue;
+        const double gap = gap_between(at.shapes[body], at.shapes[other]);
+        const LayerOptions* theirs = layer_at_side(at, other, false);
+        found.push_back({gap, gap * (theirs ? share_between_layers : share_of_gap),
+                         own + (theirs ? thickness(*theirs) : 0), "body \"" + domain.bodies[other].name + "\""});
+    }
+    return found;
+}
+
+std::string its_layer(const Body& body) { return "body \"" + body.name + "\": its layer"; }
+
+void check_values(const Body& body, double widest) {
+    const LayerOptions& layer = *body.layer;
+    if (layer.count < 1) throw DomainError(its_layer(body) + " has no prisms: layer.count is below 1");
+    if (!(layer.first_height > 0) || !std::isfinite(layer.first_height))
+        throw DomainError(its_layer(body) + " needs a positive layer.first_height, got " +
+                          written(layer.first_height) + advice({1, widest, 1}, widest));
+    if (!(layer.growth > 0) || !std::isfinite(layer.growth))
+        throw DomainError(its_layer(body) + " needs a positive layer.growth, got " + written(layer.growth, ""));
+    if (!std::isfinite(thickness(layer)))
+        throw DomainError(its_layer(body) + " overflows: its thickness is not a number" + advice(layer, widest));
+}
+
+void check_outside(const Domain& domain, const Snapshot& at, std::size_t body) {
+    const LayerOptions& layer = *at.layers[body];
+    for (const Nearby& n : nearby(domain, at, body)) {
+        const std::string gap = "the gap of " + written(n.gap) + " to " + n.name;
+        if (n.gap < least_gap(layer))
+            throw DomainError(its_layer(domain.bodies[body]) + " has no room: " + gap + " is below layer.min_gap = " +
+                              written(least_gap(layer)));
+        if (n.both > n.gap)
+            throw DomainError(its_layer(domain.bodies[body]) + " is " + written(thickness(layer)) +
+                              " thick, too much for " + gap + advice(layer, n.room));
+    }
+}
+
+/// The room of a layer outside, and of one inside, as the body stands.
+double outer_room(const Domain& domain, const Snapshot& at, std::size_t body) {
+    double room = at.box.max.x - at.box.min.x;
+    for (const Nearby& n : nearby(domain, at, body)) room = std::min(room, n.room);
+    return room;
+}
+double inner_room(const Shape& shape) { return share_inside * least_curvature_radius(shape); }
+
+void check_inside(const Body& body, const Shape& shape) {
+    if (thickness(*body.layer) <= least_curvature_radius(shape)) return;
+    throw DomainError(its_layer(body) + " inside is " + written(thickness(*body.layer)) +
+                      " thick, too much for a body that is curved with a radius of " +
+                      written(least_curvature_radius(shape)) + advice(*body.layer, inner_room(shape)));
+}
+
+}  // namespace
+
+void check_layers(const Domain& domain, double t) {
+    const Snapshot at = snapshot(domain, t);
+    int layers = 0;
+    for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
+        const Body& b = domain.bodies[body];
+        if (!b.layer) continue;
+        double widest = has_inside(*b.layer) ? inner_room(at.shapes[body]) : outer_room(domain, at, body);
+        if (b.layer->side == LayerOptions::Side::both) widest = std::min(widest, outer_room(domain, at, body));
+        check_values(b, widest);
+        if (has_outside(*b.layer)) check_outside(domain, at, body);
+        if (has_inside(*b.layer)) check_inside(b, at.shapes[body]);
+        layers += has_outside(*b.layer) + has_inside(*b.layer);
+    }
+    if (layers > most_layers)
+        throw DomainError("there are " + std::to_string(layers) + " layers, a mesh has " +
+                          std::to_string(most_layers) + " at most; one on both sides of a body counts twice");
+}
+
+}  // namespace kropla

@@ -1,0 +1,73 @@
+// Room for layers: a function of where the shapes stand, not of what was before.
+//
+// Distances to planes and convex bodies change by at most one metre per metre, and so does their minimum: heights
+// that are a share of them are graded without any smoothing. Inside an ellipsoid the medial surface lies in the plane
+// across its shortest axis c; the ball that touches at x from inside has its centre there, so its radius is c^2 / p,
+// p the distance from the ellipsoid's centre to the tangent plane at x.
+
+#include "domain/layer_room.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kropla {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The radius of the largest ball inside the shape that touches its surface at `x` [m].
+double touching_ball(const Shape& shape, const Vec3& x) {
+    const Vec3& a = shape.semi_axes;
+    const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
+    const double tangent_plane = 1 / norm({p.x / (a.x * a.x), p.y / (a.y * a.y), p.z / (a.z * a.z)});
+    const double shortest = std::min({a.x, a.y, a.z});
+    return shortest * (shortest / tangent_plane);
+}
+
+}  // namespace
+
+const LayerOptions* layer_at_side(const Snapshot& at, std::size_t body, bool inside) {
+    if (body >= at.layers.size() || !at.layers[body]) return nullptr;
+    const LayerOptions& layer = *at.layers[body];
+    return (inside ? has_inside(layer) : has_outside(layer)) ? &layer : nullptr;
+}
+
+Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x) {
+    Gap least{infinity, infinity, -1, body};
+    for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side) {
+            const double gap = side == 0 ? x[axis] - at.box.min[axis] : at.box.max[axis] - x[axis];
+            if (share_of_gap * gap < least.room) least = {gap, share_of_gap * gap, 2 * axis + side, body};
+        }
+    for (std::size_t other = 0; other < at.shapes.size(); ++other) {
+        if (other == body) continue;
+        const double gap = signed_distance(at.shapes[other], x);
+        const double room = gap * (layer_at_side(at, other, false) ? share_between_layers : share_of_gap);
+        if (room < least.room) least = {gap, room, -1, other};
+    }
+    return least;
+}
+
+double layer_thickness(const Snapshot& at, std::size_t body, bool inside, const Vec3& x) {
+    const LayerOptions* layer = layer_at_side(at, body, inside);
+    if (!layer) return 0;
+    const double room = inside ? share_inside * touching_ball(at.shapes[body], x) : nearest_gap(at, body, x).room;
+    return std::clamp(room, 0.0, thickness(*layer));
+}
+
+double distance_to_shells(const Snapshot& at, const Vec3& x) {
+    double nearest = infinity;
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        const double from_wall = signed_distance(at.shapes[body], x);
+        const bool inside = from_wall < 0;
+        double from_shell = std::abs(from_wall);
+        if (layer_at_side(at, body, inside) && from_shell - thickness(*at.layers[body]) < nearest)
+            from_shell -= layer_thickness(at, body, inside, closest_point(at.shapes[body], x));
+        nearest = std::min(nearest, from_shell);
+    }
+    return nearest;
+}
+
+}  // namespace kropla
