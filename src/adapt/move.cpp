@@ -4,6 +4,8 @@
 // own sizes, so that work stays near it.
 
 #include "adapt/adapt.h"
+#include "domain/layer_room.h"
+#include "generate/layers.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
@@ -54,19 +56,28 @@ double felt(double distance, double reach) {
     return s >= 1 ? 0 : (1 - s * s) * (1 - s * s);
 }
 
-/// The displacement of the point `x` of the surroundings; nothing if it is out of every body's reach.
-std::optional<Vec3> spread(std::span<const Travel> travels, const Box& box, const Vec3& x) {
-    const double to_wall = distance_to_walls(box, x);
+/// The distance from the body, or from the shell of its layer if it has one outside.
+double distance_to_body(const Snapshot& at, std::size_t body, const Vec3& x) {
+    const Shape& shape = at.shapes[body];
+    const double d = signed_distance(shape, x);
+    if (d <= 0 || !layer_at_side(at, body, false)) return std::max(d, 0.0);
+    return std::max(d - layer_thickness(at, body, false, closest_point(shape, x)), 0.0);
+}
+
+/// The displacement of the point `x` of the surroundings; nothing if it is out of every body's reach, or on a wall.
+std::optional<Vec3> spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) {
+    const double to_wall = distance_to_walls(at.box, x);
+    if (to_wall == 0) return std::nullopt;
     bool reached = false;
-    double total = to_wall > 0 ? 1 / (to_wall * to_wall) : std::numeric_limits<double>::infinity();
+    double total = 1 / (to_wall * to_wall);
     Vec3 sum;
-    for (const Travel& travel : travels) {
-        const double d = std::max(signed_distance(travel.from, x), 0.0);
-        if (d == 0) return travel.displacement(x);
-        const double share = felt(d, travel.reach);
+    for (std::size_t i = 0; i < travels.size(); ++i) {
+        const double d = distance_to_body(at, i, x);
+        if (d == 0) return travels[i].displacement(x);
+        const double share = felt(d, travels[i].reach);
         reached |= share > 0;
         total += 1 / (d * d);
-        sum += share / (d * d) * travel.displacement(x);
+        sum += share / (d * d) * travels[i].displacement(x);
     }
     if (!reached) return std::nullopt;
     return sum / total;
@@ -117,22 +128,40 @@ struct Reached {
     Array<Vertex, Vec3> displacement;
 };
 
-Reached reached_by(const Mesh& mesh, const Box& box, std::span<const Travel> travels,
-                   std::span<const std::vector<Vertex>> bodies) {
+/// The displacement of the bodies' vertices: rigid, but for the columns of layers, which stand on their wall at t1 as
+/// high as the gaps there let them.
+Array<Vertex, Vec3> displacement_of_bodies(const Mesh& mesh, std::span<const Travel> travels, const Snapshot& at_end,
+                                           std::span<const std::vector<Vertex>> bodies) {
+    Array<Vertex, Vec3> displacement(mesh.position.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        for (Vertex v : bodies[i]) displacement[v] = travels[i].displacement(mesh.position[v]);
+    for (const PrismLayer& layer : mesh.layers) {
+        std::vector<Vec3> wall;
+        for (int column = 0; column < count_columns(layer); ++column) {
+            const Vertex v = column_vertex(layer, column, 0);
+            wall.push_back(mesh.position[v] + displacement[v]);
+        }
+        const auto places = column_places(layer, wall, at_end);
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (i % static_cast<std::size_t>(layer.count + 1) != 0)
+                displacement[layer.columns[i]] = places[i] - mesh.position[layer.columns[i]];
+    }
+    return displacement;
+}
+
+Reached reached_by(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end,
+                   std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies) {
     enum State : char { unseen, fixed, moving, in_body };
     Array<Vertex, State> state(mesh.position.size(), unseen);
     Array<Tet, char> seen(mesh.tets.size(), 0);
     Reached reached;
-    reached.displacement.resize(mesh.position.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        for (Vertex v : bodies[i]) {
-            state[v] = in_body;
-            reached.displacement[v] = travels[i].displacement(mesh.position[v]);
-        }
+    reached.displacement = displacement_of_bodies(mesh, travels, at_end, bodies);
+    for (const auto& body : bodies)
+        for (Vertex v : body) state[v] = in_body;
 
     const auto look_at = [&](Vertex v) {
         if (state[v] != unseen) return;
-        const auto u = spread(travels, box, mesh.position[v]);
+        const auto u = spread(travels, at_start, mesh.position[v]);
         state[v] = u ? moving : fixed;
         if (!u) return;
         reached.displacement[v] = *u;
@@ -176,7 +205,7 @@ MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::
                          double t1) {
     constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
     const auto journey = travels(domain, t0, t1);
-    Reached reached = reached_by(mesh, domain.box, journey, bodies);
+    Reached reached = reached_by(mesh, snapshot(domain, t0), snapshot(domain, t1), journey, bodies);
 
     MoveReport report;
     report.fraction = 1;

@@ -1,5 +1,6 @@
 #include "adapt/moving_mesh.h"
 
+#include "generate/layers.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
@@ -12,13 +13,17 @@ constexpr int most_legs = 8;             // into which the motion of a step is c
 constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
+constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
 constexpr double harder = 0.8;           // there, cells must be better by this than elsewhere
 
+/// The vertices of a body's tets and of its layers' columns, in order.
 std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
     std::vector<Vertex> vertices;
     for (Tet t : mesh.tets.indices())
         if (alive(mesh, t) && mesh.region[t] == region)
             vertices.insert(vertices.end(), mesh.tets[t].begin(), mesh.tets[t].end());
+    for (const PrismLayer& layer : mesh.layers)
+        if (layer.body == region) vertices.insert(vertices.end(), layer.columns.begin(), layer.columns.end());
     std::ranges::sort(vertices);
     const auto repeated = std::ranges::unique(vertices);
     vertices.erase(repeated.begin(), repeated.end());
@@ -112,22 +117,9 @@ void MovingMesh::optimise() {
 
 std::optional<Refusal> MovingMesh::refusal() const {
     if (stuck_) return stuck_;
-    Refusal refusal;
-    double worst = options_.floor;
-    for (Tet t : touched_)
-        if (const double ratio = aspect_ratio(current_, t); ratio > worst) {
-            worst = ratio;
-            refusal.limiting = t;
-        }
-    if (refusal.limiting.exists()) {
-        char what[80];
-        std::snprintf(what, sizeof what, "would have R/r %.4g, above the limit %.4g", worst, options_.floor);
-        const double was = aspect_ratio(before_, refusal.limiting);
-        const double share = was < options_.floor ? (options_.floor - was) / (worst - was) : 0;
-        refusal.why = describe(current_, refusal.limiting, what);
-        refusal.advised_dt = share * (target_time_ - time_);
-        return refusal;
-    }
+    if (auto gap = narrow_gap()) return gap;
+    if (auto cell = worst_cell()) return cell;
+    if (auto prism = squeezed_prism()) return prism;
     const auto displacement = displacement_between(before_, current_);
     for (Tet t : touched_)
         if (const double safe = safe_fraction(before_, {&t, 1}, displacement); safe < 1)
@@ -136,8 +128,51 @@ std::optional<Refusal> MovingMesh::refusal() const {
     return std::nullopt;
 }
 
+std::optional<Refusal> MovingMesh::narrow_gap() const {
+    const auto gap = narrowest_gap(current_, snapshot(domain_, target_time_));
+    if (!gap || gap->distance >= gap->allowed) return std::nullopt;
+    char text[200];
+    std::snprintf(text, sizeof text, "body \"%s\" would come within %.3g m of %s at (%.5g, %.5g, %.5g) m, t = %.6g s; "
+                  "its layer needs %.3g m", domain_.bodies[gap->body].name.c_str(), gap->distance,
+                  gap->wall >= 0 ? "a wall" : "another body", gap->place.x, gap->place.y, gap->place.z, target_time_,
+                  gap->allowed);
+    return Refusal{text, Tet{}, 0};
+}
+
+std::optional<Refusal> MovingMesh::worst_cell() const {
+    Refusal refusal;
+    double worst = options_.floor;
+    for (Tet t : touched_)
+        if (const double ratio = aspect_ratio(current_, t); ratio > worst) {
+            worst = ratio;
+            refusal.limiting = t;
+        }
+    if (!refusal.limiting.exists()) return std::nullopt;
+    char what[80];
+    std::snprintf(what, sizeof what, "would have R/r %.4g, above the limit %.4g", worst, options_.floor);
+    const double was = aspect_ratio(before_, refusal.limiting);
+    const double share = was < options_.floor ? (options_.floor - was) / (worst - was) : 0;
+    refusal.why = describe(current_, refusal.limiting, what);
+    refusal.advised_dt = share * (target_time_ - time_);
+    return refusal;
+}
+
+std::optional<Refusal> MovingMesh::squeezed_prism() const {
+    for (const Prism& prism : all_prisms(current_)) {
+        const auto corners = prism_corners(current_, prism);
+        const double jacobian = scaled_corner_jacobian(corners);
+        if (jacobian >= least_jacobian) continue;
+        char text[160];
+        std::snprintf(text, sizeof text, "a prism at (%.5g, %.5g, %.5g) m would have a scaled Jacobian of %.3g, below %.3g",
+                      corners[0].x, corners[0].y, corners[0].z, jacobian, least_jacobian);
+        return Refusal{text, Tet{}, 0};
+    }
+    return std::nullopt;
+}
+
 void MovingMesh::refuse() {
-    if (const auto reason = refusal()) trouble_.push_back(centroid(before_, reason->limiting));
+    if (const auto reason = refusal(); reason && reason->limiting.exists())
+        trouble_.push_back(centroid(before_, reason->limiting));
     current_ = reference_;
     before_ = reference_;
 }

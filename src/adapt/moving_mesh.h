@@ -7,7 +7,7 @@ namespace kropla {
 /// Why a step is refused: what is wrong, where, and what would help.
 struct Refusal {
     std::string why;       // one line: the limiting cell, its place, its aspect ratio
-    Tet limiting;          // in the current mesh
+    Tet limiting;          // in the current mesh; none if it is not a tet that stops the step
     double advised_dt = 0; // [s] that would have been safe
 };
 
@@ -60,6 +60,9 @@ public:
     const Changes& accept();
 
 private:
+    [[nodiscard]] std::optional<Refusal> narrow_gap() const;
+    [[nodiscard]] std::optional<Refusal> worst_cell() const;
+    [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
     void note_touched(const Mesh& mesh, std::span<const Tet> cells);
 
     Domain domain_;
