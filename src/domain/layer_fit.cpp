@@ -26,10 +26,10 @@ std::string rounded_down(double value, const char* unit = " m") {
     return written(std::floor(value / digit) * digit, unit);
 }
 
-/// The largest growth at which the layer is no thicker than `room` [m]; 0 if there is none.
+/// The largest growth at which the layer is no thicker than `room` [m]; 0 if there is none of at least 1.
 double fitting_growth(LayerOptions layer, double room) {
-    if (layer.first_height > room) return 0;
-    double fits = 0, too_much = layer.growth;
+    if (layer.count * layer.first_height > room) return 0;
+    double fits = 1, too_much = layer.growth;
     for (int i = 0; i < 60; ++i) {
         layer.growth = (fits + too_much) / 2;
         (thickness(layer) <= room ? fits : too_much) = layer.growth;

@@ -1,10 +1,14 @@
 #include "mesh/meshes.h"
 
 #include "base/random.h"
+#include "mesh/prisms.h"
 #include "mesh/topology.h"
 
+#include <map>
 #include <numbers>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace kropla {
 namespace {
@@ -137,6 +141,71 @@ Mesh cube_in_cube(int n) {
         for (int axis = 0; axis < 3; ++axis) inside &= centre[axis] > 1.0 / n && centre[axis] < 1 - 1.0 / n;
         if (inside) mesh.region[t] = Region(1);
     }
+    return mesh;
+}
+
+namespace {
+
+/// The facets of the body's tets towards the surroundings, their normals out of the body.
+std::vector<std::array<Vertex, 3>> interface_facets(const Mesh& mesh) {
+    std::vector<std::array<Vertex, 3>> facets;
+    for (Tet t : mesh.tets.indices())
+        for (int i = 0; i < 4; ++i) {
+            const Tet n = mesh.neighbour[t][static_cast<std::size_t>(i)];
+            if (mesh.region[t] == Region(1) && mesh.region[n] == surroundings)
+                facets.push_back(facet_vertices(mesh, {t, i}));
+        }
+    return facets;
+}
+
+std::vector<BoundaryFacet> boundary_facets(const Mesh& mesh) {
+    std::vector<BoundaryFacet> facets;
+    for (Tet t : mesh.tets.indices())
+        for (int i = 0; i < 4; ++i)
+            if (const Patch patch = mesh.patch[t][static_cast<std::size_t>(i)]; patch.exists())
+                facets.push_back({facet_vertices(mesh, {t, i}), patch});
+    return facets;
+}
+
+/// Columns from a copy of each of the grid's vertices on the interface, half as far from the centre, to that vertex.
+PrismLayer columns_on(Array<Vertex, Vec3>& position, std::span<const std::array<Vertex, 3>> facets, int count) {
+    const Vec3 centre = {0.5, 0.5, 0.5};
+    PrismLayer layer{surroundings, Region(1), count, {}, {}};
+    std::map<Vertex, int> column;
+    for (const auto& facet : facets) {
+        for (Vertex v : facet) {
+            if (!column.emplace(v, static_cast<int>(column.size())).second) continue;
+            const Vec3 out = position[v] - centre;
+            for (int k = 0; k < count; ++k)
+                layer.columns.push_back(position.push_back(centre + (0.5 + 0.5 * k / count) * out));
+            layer.columns.push_back(v);
+        }
+        layer.triangles.push_back({column[facet[0]], column[facet[1]], column[facet[2]]});
+    }
+    return layer;
+}
+
+}  // namespace
+
+Mesh layered_cube(int count) {
+    const Mesh grid = cube_in_cube(3);
+    const auto facets = interface_facets(grid);
+    auto boundary = boundary_facets(grid);
+    auto position = grid.position;
+    auto tets = grid.tets;
+    const PrismLayer layer = columns_on(position, facets, count);
+    Array<Vertex, Vertex> wall_below(position.size());
+    for (int column = 0; column < count_columns(layer); ++column)
+        wall_below[column_vertex(layer, column, count)] = column_vertex(layer, column, 0);
+    for (Tet t : tets.indices())
+        for (Vertex& v : tets[t])
+            if (grid.region[t] == Region(1)) v = wall_below[v];
+    for (const auto& [a, b, c] : facets) {
+        boundary.push_back({{a, b, c}, shell_patch(Layer(0))});
+        boundary.push_back({{wall_below[a], wall_below[b], wall_below[c]}, wall_patch(Layer(0))});
+    }
+    Mesh mesh = make_mesh(position, tets, grid.region, boundary);
+    add_layer(mesh, layer);
     return mesh;
 }
 

@@ -63,6 +63,18 @@ namespace kropla {
 /// cube_of_tets(n), n >= 3, in which all but the outermost cubes of the grid are region 1.
 [[nodiscard]] Mesh cube_in_cube(int n);
 
+/// cube_in_cube(3) whose inner cube, region 1, is shrunk to half, the gap filled by a layer outside of `count` prisms
+/// per column, all as high: 6 tets in the body, 12 wall triangles, 8 columns.
+///
+///      +-----------+
+///      | +-------+ |    the shell at 1/3 and 2/3, tets of the surroundings beyond
+///      | |\ ___ /| |
+///      | | |   | | |    the wall at 5/12 and 7/12, tets of region 1 in it
+///      | | |___| | |
+///      | |/_____\| |
+///      +-----------+
+[[nodiscard]] Mesh layered_cube(int count);
+
 /// Moves each inner vertex, those of interfaces too, by up to `amount` [m] along each axis. Random, the same
 /// for the same seed. Keeps a cube_of_tets(n) valid while amount <= 0.1 / n.
 void jiggle(Mesh& mesh, double amount, std::uint64_t seed);
