@@ -8,8 +8,8 @@
 
 namespace kropla {
 
-/// Cells to be assembled, tets and prisms. What is done with a cell is written once, for both kinds, in terms of
-/// its vertices and its region.
+/// Cells to be assembled, tets and prisms. What is done with a cell is written once, for both kinds, in terms
+/// of its vertices and its region.
 struct Cells {
     std::vector<Tet> tets;
     std::vector<Prism> prisms;
@@ -46,7 +46,7 @@ template <std::size_t n>
     return at;
 }
 
-/// Where a region ends: triangles with their normal (right hand) out of it. Quads of prisms lie between prisms.
+/// Where a region ends: triangles with their normal (right hand) out of it. Quads of prisms lie between two.
 struct RegionSurface {
     std::vector<std::array<Vertex, 3>> interface;  // to cells of another region
     std::vector<std::array<Vertex, 3>> outer;      // of the domain

@@ -9,11 +9,12 @@
 namespace kropla {
 
 // Shape functions of tets (linear) and prisms (linear in the triangle, linear along the column), by points of
-// quadrature. A tet has a single point, as its gradients are constant. A prism has 3 x 2 Gauss points: the integrals
-// of phi_i, of grad phi_i and of w.grad phi_i (w a velocity given at the corners) are exact, as their integrands are
-// polynomials in the coordinates of the reference prism, at most quadratic in the triangle and cubic along the column:
-// det J and the cofactors of J are (1, 2), (1, 1) or (0, 2). Products phi_i phi_j are exact on prisms that are not
-// distorted; elsewhere their sums over j are.
+// quadrature. A tet has a single point, as its gradients are constant. A prism has 3 x 2 Gauss points, which
+// make the integrals of phi_i, of grad phi_i and of w.grad phi_i (w a velocity given at the corners) exact:
+// in the coordinates of the reference prism their integrands are polynomials, at most quadratic in the
+// triangle and cubic along the column. (det J is of the degrees (1, 2), its cofactors are of (1, 1) and
+// (0, 2), phi_i and w of (1, 1).) Products phi_i phi_j are exact on prisms that are not distorted; elsewhere
+// their sums over j are.
 
 /// The places of the corners of a cell [m], numbered as in mesh/cells.h.
 template <std::size_t n>
@@ -47,8 +48,8 @@ using CellPoints = std::array<CellPoint<n>, points_of_cell<n>>;
 [[nodiscard]] CellPoints<4> cell_points(const Corners<4>& x);
 [[nodiscard]] CellPoints<6> cell_points(const Corners<6>& x);
 
-/// The only point of a tet: its volume and dV/dx_i, a third of the area vector of the facet opposite corner i,
-/// pointing to that corner.
+/// The only point of a tet: its volume and dV/dx_i, a third of the area vector of the facet opposite corner
+/// i, pointing to that corner.
 [[nodiscard]] CellPoint<4> linear_tet(const Corners<4>& x);
 
 template <std::size_t n>
@@ -66,9 +67,10 @@ template <std::size_t n>
     return sum;
 }
 
-/// The means over a step of the points' volume_gradient, while the corners go straight from `x0` to `x1`. Exact: the
-/// integrand is quadratic in time and two Gauss points integrate cubics. So the volume swept is the volume gained:
-/// sum (x1_i - x0_i) . mean_i = V1 - V0, the geometric conservation law of [Lesoinne, Farhat 1996].
+/// The means over a step of the points' volume_gradient, while the corners go straight from `x0` to `x1`.
+/// Exact: the integrand is quadratic in time and two Gauss points integrate cubics. So the volume swept is
+/// the volume gained: sum (x1_i - x0_i) . mean_i = V1 - V0, the geometric conservation law of
+/// [Lesoinne, Farhat 1996].
 template <std::size_t n>
 using VolumeGradients = std::array<std::array<Vec3, n>, points_of_cell<n>>;
 [[nodiscard]] VolumeGradients<4> mean_volume_gradients(const Corners<4>& x0, const Corners<4>& x1);
@@ -88,8 +90,8 @@ struct ShapeMeans {
 inline constexpr std::array<double, 2> gauss_points = {0.5 - 0.5 * std::numbers::inv_sqrt3,
                                                        0.5 + 0.5 * std::numbers::inv_sqrt3};
 
-/// Where point k of a prism stands: barycentric coordinates in its triangle, and the height, 0 ... 1. The three points
-/// of a triangle, each of weight one third, integrate quadratics [Strang, Fix 1973].
+/// Where point k of a prism stands: barycentric coordinates in its triangle, and the height, 0 ... 1. The
+/// three points of a triangle, each of weight one third, integrate quadratics [Strang, Fix 1973].
 struct PrismPoint {
     std::array<double, 3> triangle;
     double height;

@@ -20,8 +20,8 @@ struct DisplacedFlow {
 /// In the weak form, with the region's shape at the end of the step and w the velocity of the mesh,
 ///     sum_j A_ij Phi_j = F_i,   A_ij = integral of grad phi_i . grad phi_j over the region,
 ///     F_i = the mean over the step of the integral of phi_i w.n over its boundary (n out of the region),
-/// so that F_i is what the surface sweeps, to rounding (see heat.h for what this is good for). A in prisms is the sum
-/// over their points (elements.h), as is what the flow carries; so they agree, to rounding. All F_i
+/// so that F_i is what the surface sweeps, to rounding (see heat.h for what this is good for). A in prisms is
+/// the sum over their points (elements.h), as is what the flow carries; so they agree, to rounding. All F_i
 /// together are the growth of the region's volume: zero if bodies keep theirs. If not, gas has no way to go;
 /// then the divergence of u is that growth, spread evenly. Options of the solver: -potential_ksp_type and so
 /// on. Throws SolverError if it does not converge.

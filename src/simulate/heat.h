@@ -13,8 +13,8 @@ namespace kropla {
 // The heat equation on a moving mesh, material by region:
 //     rho c (dT/dt + u . grad T) = div(k grad T) + s.
 //
-// With the shape functions phi_i of tets and prisms (elements.h) that move with the mesh (velocity w), with div u = 0, and with u.n = w.n
-// where a region ends, it reads, region by region, in conservative form
+// With the shape functions phi_i of tets and prisms (elements.h) that move with the mesh (velocity w), with
+// div u = 0, and with u.n = w.n where a region ends, it reads, region by region, in conservative form
 //     d/dt (M T)_i = integral(rho c T (u - w).grad phi_i) - integral(k grad T.grad phi_i) + load_i,
 // M_ij = integral(rho c phi_i phi_j). A step by backward Euler:
 //     M1 T1 - M0 T0 + L (T1 - T0 - moved.grad T1) = dt (C - K) T1 + dt load,
@@ -24,8 +24,8 @@ namespace kropla {
 // L, the lumped less the consistent mass (at the end), damps the wiggles that a consistent mass makes beside
 // a jump; where the mesh rests, the two masses together are the lumped one, the integral of rho c phi_i per
 // corner. It acts on what the material gains alone: `moved` is how far a vertex was moved past the material,
-// and the bracket, with the mean gradient over the cell, is zero for a linear temperature that rests. (Lumping
-// M itself would lose most of the convection where single vertices move.)
+// and the bracket, with the mean gradient over the cell, is zero for a linear temperature that rests.
+// (Lumping M itself would lose most of the convection where single vertices move.)
 //
 // It keeps energy: the phi_i sum to one, so that every column of C, K and L sums to zero, and the masses gain
 // what the load brings. It keeps a constant state: for T = 1 the mesh's part of C and the change of mass
@@ -33,17 +33,17 @@ namespace kropla {
 //     sum_j (M1 - M0)_ij + dt integral(rho c w.grad phi_i) = dt rho c F_i,
 //     F_i = the integral of phi_i w.n over the region's boundary,
 // an identity at every instant that holds for the step as well, since its integrals over space and its means
-// over time are exact, in prisms too: with sum_j phi_j = 1 what is left under them are polynomials of so low a
-// degree that the points of elements.h integrate them. The quads between prisms sweep what one gains and the
-// other loses; so F_i is of triangles alone. A body moves as a whole; for one who goes with it u = 0, and w = 0 but for vertices that were
-// moved inside the body; F_i = 0. Around bodies F_i is not zero, and gas at rest would go through their
-// surface; instead it flows as they push it, u = grad Phi with integral(grad Phi.grad phi_i) = F_i
-// (flow_potential.h). The flow's part of C is that same sum over the cells' points and makes up for F_i,
-// exactly.
+// over time are exact, in prisms too: with sum_j phi_j = 1 what is left under them are polynomials of so low
+// a degree that the points of elements.h integrate them. The quads between prisms sweep what one gains and
+// the other loses; so F_i is of triangles alone. A body moves as a whole; for one who goes with it u = 0, and
+// w = 0 but for vertices that were moved inside the body; F_i = 0. Around bodies F_i is not zero, and gas at
+// rest would go through their surface; instead it flows as they push it, u = grad Phi with
+// integral(grad Phi.grad phi_i) = F_i (flow_potential.h). The flow's part of C is that same sum over the
+// cells' points and makes up for F_i, exactly.
 //
 // Where cells are too coarse for the convection, SUPG: the residual without diffusion (linear tets have none,
-// prisms next to none), rho c (dT/dt + v.grad T) - s, is weighted with tau v.grad phi_i, v the mean of u - w over the cell.
-// It is zero for a constant state and its weights sum to zero: both properties hold.
+// prisms next to none), rho c (dT/dt + v.grad T) - s, is weighted with tau v.grad phi_i, v the mean of u - w
+// over the cell. It is zero for a constant state and its weights sum to zero: both properties hold.
 
 /// A quantity at a place [m] and a time [s].
 using Quantity = std::function<double(const Vec3& place, double t)>;

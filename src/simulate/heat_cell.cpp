@@ -13,14 +13,14 @@ namespace {
 /// A cell of n corners during the step.
 template <std::size_t n>
 struct Cell {
-    Corners<n> x0, x1;                 // where the corners came from, for one who goes with the body, and are [m]
-    CellPoints<n> before, now;         // at the step's begin and end
-    std::array<double, n> old;         // [K]
-    std::array<double, n> source;      // [W/m^3]
-    std::array<double, n> potential;   // [m^2/s]
-    double capacity;                   // rho c [J/(m^3 K)]
-    double conductivity;               // [W/(m K)]
-    double dt;                         // [s]
+    Corners<n> x0, x1;                // where the corners came from, for one who goes with a body, and are [m]
+    CellPoints<n> before, now;        // at the step's begin and end
+    std::array<double, n> old;        // [K]
+    std::array<double, n> source;     // [W/m^3]
+    std::array<double, n> potential;  // [m^2/s]
+    double capacity;                  // rho c [J/(m^3 K)]
+    double conductivity;              // [W/(m K)]
+    double dt;                        // [s]
 };
 
 template <std::size_t n, class Name>

@@ -12,7 +12,7 @@ struct HeatStep {
     const HeatOptions& options;
     const Array<Vertex, double>& old_temperature;
     Array<Region, Array<Vertex, double>> potential;  // of the flow of material at rest [m^2/s], or empty
-    Array<Region, Array<Vertex, Vec3>> carried;      // of a body: where its vertices came from [m], else empty
+    Array<Region, Array<Vertex, Vec3>> carried;      // where a body's vertices came from [m], or empty
     Array<Region, Array<Vertex, double>> source;     // at the region's vertices [W/m^3], or empty
     double dt;                                       // [s]
 };

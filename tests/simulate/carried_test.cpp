@@ -1,5 +1,6 @@
 #include "base/random.h"
 #include "meshes.h"
+#include "mesh/prisms.h"
 #include "simulate/carried.h"
 
 #include <gtest/gtest.h>
@@ -33,6 +34,21 @@ TEST(Carried, FindsTheRigidMotionFromTheInterface) {
     }
     EXPECT_GT(apart, 5);   // of the 27 inside
     EXPECT_LT(apart, 22);  // those that were not shaken are at their places, bit for bit
+}
+
+TEST(Carried, TakesTheLayerInsideTheBodyAlong) {
+    const Mesh before = with_layer(unit_cube_with_body(4), {0.5, 0.5, 0.5}, Region(1), 2, 0.3);
+    Mesh current = before;
+    for (Vec3& x : current.position) x = turned_and_shifted(x);
+    const PrismLayer& layer = before.layers[0];
+    for (int column = 0; column < count_columns(layer); ++column)  // squeezed to its wall
+        for (int k = 1; k <= layer.count; ++k) {
+            Vec3& x = current.position[column_vertex(layer, column, k)];
+            x += 0.2 * (current.position[column_vertex(layer, column, 0)] - x);
+        }
+    const Array<Vertex, Vec3> carried = carried_along(before, current, Region(1));
+    for (Vertex v : layer.columns)
+        EXPECT_LT(distance(carried[v], turned_and_shifted(before.position[v])), 1e-14);
 }
 
 TEST(Carried, ABodyWithoutInterfaceStays) {

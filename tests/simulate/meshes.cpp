@@ -69,6 +69,62 @@ std::vector<BoundaryFacet> faces(const Grid& grid, const Array<Tet, std::array<V
     return boundary;
 }
 
+/// A mesh whose body's surface was opened: the tets of the body have vertices of their own there.
+struct Opened {
+    Array<Vertex, Vec3> position;
+    Array<Tet, std::array<Vertex, 4>> tets;
+    std::vector<Vertex> outer, inner;           // per column
+    std::vector<std::array<int, 3>> triangles;  // columns, normals out of the body
+
+    /// The old boundary and the two sides of the gap.
+    std::vector<BoundaryFacet> boundary(const Mesh& before, bool outside) const {
+        const Layer layer(before.layers.size());
+        std::vector<BoundaryFacet> facets;
+        for (Tet t : before.tets.indices())
+            for (std::size_t corner = 0; corner < 4; ++corner)
+                if (before.patch[t][corner].exists())
+                    facets.push_back({facet_vertices({t, corner}), before.patch[t][corner]});
+        for (const auto& [a, b, c] : triangles) {
+            const auto of = [a, b, c](const std::vector<Vertex>& side) {
+                return std::array{side[std::size_t(a)], side[std::size_t(b)], side[std::size_t(c)]};
+            };
+            facets.push_back({of(outer), outside ? shell_patch(layer) : wall_patch(layer)});
+            facets.push_back({of(inner), outside ? wall_patch(layer) : shell_patch(layer)});
+        }
+        return facets;
+    }
+    std::array<Vertex, 3> facet_vertices(std::pair<Tet, std::size_t> facet) const {
+        const auto& [i, j, k] = tet_facets[facet.second];
+        const auto& v = tets[facet.first];
+        return {v[std::size_t(i)], v[std::size_t(j)], v[std::size_t(k)]};
+    }
+};
+
+Opened open_surface(const Mesh& mesh, Region body, const Vec3& middle, double depth) {
+    Opened opened{mesh.position, mesh.tets, {}, {}, {}};
+    const auto of_body = vertices_of(mesh, body);
+    Array<Vertex, int> column(mesh.position.size(), -1);
+    const auto shrunk = [&](const Vec3& x) { return middle + (1 - depth) * (x - middle); };
+    for (const auto& facet : region_surface(mesh, body).interface) {
+        std::array<int, 3> triangle = {};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (column[facet[k]] < 0) {
+                column[facet[k]] = static_cast<int>(opened.outer.size());
+                opened.outer.push_back(facet[k]);
+                opened.inner.push_back(opened.position.push_back(shrunk(mesh.position[facet[k]])));
+            }
+            triangle[k] = column[facet[k]];
+        }
+        opened.triangles.push_back(triangle);
+    }
+    for (Vertex v : mesh.position.indices())
+        if (of_body[v] && column[v] < 0) opened.position[v] = shrunk(mesh.position[v]);
+    for (Tet t : mesh.tets.indices())
+        for (Vertex& v : opened.tets[t])
+            if (mesh.region[t] == body && column[v] >= 0) v = opened.inner[std::size_t(column[v])];
+    return opened;
+}
+
 }  // namespace
 
 Mesh cube_grid(int nx, int ny, int nz, const Place& place, const RegionOfCube& region) {
@@ -119,19 +175,42 @@ Mesh ball_of_shells(const std::vector<double>& radii, const std::function<int(in
     });
 }
 
+Mesh with_layer(const Mesh& mesh, const Vec3& middle, Region of, int count, double depth) {
+    const Region body{1};
+    const bool outside = of != body;
+    Opened opened = open_surface(mesh, body, middle, depth);
+    PrismLayer layer{.region = of, .body = body, .count = count, .triangles = {}, .columns = {}};
+    for (std::size_t c = 0; c < opened.outer.size(); ++c) {
+        const Vec3 inner = opened.position[opened.inner[c]], outer = opened.position[opened.outer[c]];
+        layer.columns.push_back(outside ? opened.inner[c] : opened.outer[c]);
+        for (int k = 1; k < count; ++k) {
+            const double s = 1.0 * k / count;
+            layer.columns.push_back(opened.position.push_back(
+                outside ? (1 - s) * inner + s * outer : (1 - s) * outer + s * inner));
+        }
+        layer.columns.push_back(outside ? opened.outer[c] : opened.inner[c]);
+    }
+    for (const auto& [a, b, c] : opened.triangles)
+        layer.triangles.push_back(outside ? std::array{a, b, c} : std::array{a, c, b});
+    Mesh result = make_mesh(opened.position, opened.tets, mesh.region, opened.boundary(mesh, outside));
+    for (const PrismLayer& other : mesh.layers) add_layer(result, other);
+    add_layer(result, layer);
+    return result;
+}
+
 Array<Vertex, char> vertices_of(const Mesh& mesh, Region region) {
     Array<Vertex, char> of_region(mesh.position.size(), 0);
-    for (Tet t : mesh.tets.indices()) {
-        if (mesh.region[t] != region) continue;
-        for (Vertex v : mesh.tets[t]) of_region[v] = 1;
-    }
+    for_each_cell(living_cells(mesh, region), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) of_region[v] = 1;
+    });
     return of_region;
 }
 
 double l2_error(const Mesh& mesh, const NodalField& field, const std::function<double(const Vec3&)>& exact) {
     const double near = 0.5854101966249685, far = 0.1381966011250105;  // (5 + 3 sqrt 5)/20, (5 - sqrt 5)/20
+    const Cells cells = living_cells(mesh);
     double sum = 0;
-    for (Tet t : mesh.tets.indices()) {
+    for (Tet t : cells.tets) {
         const Corners<4> x = corners(mesh, t);
         for (std::size_t point = 0; point < 4; ++point) {
             Vec3 place;
@@ -143,6 +222,15 @@ double l2_error(const Mesh& mesh, const NodalField& field, const std::function<d
             }
             const double error = value - exact(place);
             sum += linear_tet(x).volume / 4 * error * error;
+        }
+    }
+    for (const Prism& prism : cells.prisms) {
+        const Corners<6> x = corners(mesh, prism);
+        const auto values = at_corners(field.values, cell_vertices(mesh, prism));
+        const CellPoints<6> points = cell_points(x);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double error = mean_value(k, values) - exact(mean_value(k, x));
+            sum += points[k].volume * error * error;
         }
     }
     return std::sqrt(sum);

@@ -41,5 +41,19 @@ TEST(Partition, OfOneRegionLeavesOutTheOthers) {
     EXPECT_EQ(std::ranges::count(numbering.row, -1), 729 - 125);
 }
 
+TEST(Partition, ColumnsOfALayerAreNumberedToo) {
+    const Mesh mesh = with_layer(unit_cube_with_body(4), {0.5, 0.5, 0.5}, surroundings, 3, 0.3);
+    const Cells cells = living_cells(mesh);
+    const Numbering numbering = number_vertices(mesh, cells, 2);
+    EXPECT_EQ(numbering.rows(), 125 + 3 * 26);  // 26 of the grid's vertices are on the body
+    EXPECT_EQ(numbering.rows(), count_vertices(mesh));
+    std::size_t listed = 0;
+    for (int rank = 0; rank < 2; ++rank) listed += cells_of_rank(mesh, cells, numbering, rank).prisms.size();
+    EXPECT_EQ(cells.prisms.size(), 3u * 48);
+    EXPECT_GT(listed, cells.prisms.size());
+    EXPECT_LT(listed, 2 * cells.prisms.size());
+    EXPECT_EQ(living_cells(mesh, Region(1)).prisms.size(), 0u);
+}
+
 }  // namespace
 }  // namespace kropla
