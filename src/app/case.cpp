@@ -1,6 +1,7 @@
 // Reading a case file: every key is checked here, once, so that the rest of the program may trust a Case.
 #include "app/case.h"
 
+#include "app/case_body.h"
 #include "app/case_heat.h"
 #include "app/case_table.h"
 #include "base/error.h"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace kropla {
 namespace {
@@ -28,72 +28,6 @@ Box read_box(const CaseTable& table) {
                                         box.max[axis], box.min[axis]));
     }
     return box;
-}
-
-std::string read_name(const CaseTable& table, const std::vector<Body>& before) {
-    const std::string name = table.text("name");
-    if (name.empty()) table.refuse_value("name", "must not be empty");
-    if (name == "surroundings") table.refuse("name", "\"surroundings\" is the name of the rest of the box");
-    const auto same = std::ranges::find(before, name, &Body::name);
-    if (same != before.end()) {
-        table.refuse("name", fmt::format("{} is the name of body[{}] already; names must differ",
-                                         toml_text(name), same - before.begin()));
-    }
-    return name;
-}
-
-Shape read_sphere(const CaseTable& table) {
-    if (table.has("axes")) table.refuse("axes", "a sphere has a radius instead");
-    if (table.has("rotation")) table.refuse("rotation", "a sphere has none");
-    const double radius = table.positive("radius");
-    return {table.vec3("centre"), {radius, radius, radius}, {}};
-}
-
-Shape read_ellipsoid(const CaseTable& table, WrittenBody& written) {
-    if (table.has("radius")) table.refuse("radius", "an ellipsoid has axes = [a, b, c] instead");
-    const Vec3 axes = table.vec3("axes");
-    if (!(axes.x > 0 && axes.y > 0 && axes.z > 0)) table.refuse_value("axes", "must all be positive");
-    Shape shape{table.vec3("centre"), axes, {}};
-    if (table.has("rotation")) {
-        const std::vector<double> r = table.numbers("rotation", 4, "[axis x, y, z, degrees]");
-        const Vec3 axis{r[0], r[1], r[2]};
-        if (!(norm(axis) > 0)) table.refuse_value("rotation", "must have an axis that is not zero");
-        shape.orientation = rotation_about(axis, r[3] * std::numbers::pi / 180);
-        written.rotation = fmt::format("[{}]", fmt::join(r, ", "));
-    }
-    return shape;
-}
-
-Shape read_shape(const CaseTable& table, WrittenBody& written) {
-    written.shape = table.text("shape");
-    if (written.shape == "sphere") return read_sphere(table);
-    if (written.shape == "ellipsoid") return read_ellipsoid(table, written);
-    table.refuse_value("shape", "must be \"sphere\" or \"ellipsoid\"");
-}
-
-Motion read_motion(const CaseTable& table, WrittenBody& written) {
-    constexpr std::array<std::string_view, 3> axes = {"x", "y", "z"};
-    table.allow({"x", "y", "z"});
-    std::vector<Expression> path;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Formula formula =
-            table.has(axes[i]) ? table.formula(axes[i], Variables::time) : Formula{Expression("0"), "0"};
-        path.push_back(formula.value);
-        written.motion[i] = formula.written;
-    }
-    return [path](double t) { return Pose{{path[0](t), path[1](t), path[2](t)}, {}}; };
-}
-
-void read_bodies(const CaseTable& file, Case& it) {
-    for (const CaseTable& table : file.tables("body")) {
-        table.allow({"name", "shape", "centre", "radius", "axes", "rotation", "motion", "layer"});
-        if (table.has("layer")) table.refuse("layer", "prism layers are not available yet; leave it out");
-        WrittenBody written;
-        Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
-        if (table.has("motion")) body.motion = read_motion(table.table("motion"), written);
-        it.domain.bodies.push_back(std::move(body));
-        it.written_bodies.push_back(std::move(written));
-    }
 }
 
 SizeField read_size(const CaseTable& table) {

@@ -37,6 +37,7 @@ struct WrittenBody {
     std::string shape;  // "sphere" or "ellipsoid", without quotes
     std::string rotation;
     std::array<std::string, 3> motion;  // all empty: at rest
+    std::string angle, axis;            // of the motion; both empty: it does not turn
 };
 struct WrittenHeat {
     std::vector<std::string> sources;  // per region

@@ -103,7 +103,11 @@ Vec3 CaseTable::vec3(std::string_view key) const {
 
 Formula CaseTable::formula(std::string_view key, Variables variables, const Vec3& probe) const {
     constexpr std::string_view must = "must be a finite number or an expression in quotes";
-    const toml::node& value = node(key, must);
+    return formula(key, node(key, must), must, variables, probe);
+}
+
+Formula CaseTable::formula(std::string_view key, const toml::node& value, std::string_view must,
+                           Variables variables, const Vec3& probe) const {
     if (const auto constant = finite_number(value)) {
         const std::string written = toml_number(*constant);
         return {Expression(written, variables), written};
@@ -117,6 +121,16 @@ Formula CaseTable::formula(std::string_view key, Variables variables, const Vec3
                                 std::isnan(at_start) ? "not a number" : "infinite"));
     }
     return {std::move(expression), toml_text(*text)};
+}
+
+std::vector<Formula> CaseTable::formulas(std::string_view key, std::size_t count, std::string_view meaning,
+                                         Variables variables) const {
+    const std::string must = fmt::format("must be {} finite numbers or expressions in quotes {}", count, meaning);
+    const toml::array* array = node(key, must).as_array();
+    if (array == nullptr || array->size() != count) refuse_value(key, must);
+    std::vector<Formula> all;
+    for (const toml::node& item : *array) all.push_back(formula(key, item, must, variables, {}));
+    return all;
 }
 
 Expression CaseTable::compiled(std::string_view key, const std::string& text, Variables variables) const {

@@ -51,6 +51,10 @@ public:
     /// Finite at t = 0 and `probe`.
     [[nodiscard]] Formula formula(std::string_view key, Variables variables, const Vec3& probe = {}) const;
 
+    /// As many of them in brackets; `meaning` names them in a refusal.
+    [[nodiscard]] std::vector<Formula> formulas(std::string_view key, std::size_t count,
+                                                std::string_view meaning, Variables variables) const;
+
     [[nodiscard]] CaseTable table(std::string_view key) const;
     /// The tables of [[key]], in order; none if the key is missing.
     [[nodiscard]] std::vector<CaseTable> tables(std::string_view key) const;
@@ -68,6 +72,8 @@ private:
     [[nodiscard]] const toml::node& node(std::string_view key, std::string_view must) const;
     [[nodiscard]] double number(std::string_view key, std::string_view must) const;
     [[nodiscard]] std::string full_name(std::string_view key) const;
+    [[nodiscard]] Formula formula(std::string_view key, const toml::node& value, std::string_view must,
+                                  Variables variables, const Vec3& probe) const;
     [[nodiscard]] Expression compiled(std::string_view key, const std::string& text,
                                       Variables variables) const;
 

@@ -1,6 +1,7 @@
 // The case as it is run, written so that it reads as the same case again.
 #include "app/case.h"
 
+#include "app/case_body.h"
 #include "app/case_heat.h"
 #include "app/case_table.h"
 
@@ -10,6 +11,12 @@ namespace kropla {
 namespace {
 
 std::string vec3(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+std::string layer(const LayerOptions& it) {
+    return fmt::format(
+        "[body.layer]\ncount = {}\nfirst_height = {}\ngrowth = {}\nside = \"{}\"\nmin_gap = {}\n", it.count,
+        it.first_height, it.growth, side_names[static_cast<std::size_t>(it.side)], least_gap(it));
+}
 
 std::string body(const Body& it, const WrittenBody& written) {
     std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\ncentre = {}\n", toml_text(it.name),
@@ -22,6 +29,8 @@ std::string body(const Body& it, const WrittenBody& written) {
     }
     const auto& [x, y, z] = written.motion;
     if (!x.empty()) text += fmt::format("[body.motion]\nx = {}\ny = {}\nz = {}\n", x, y, z);
+    if (!written.angle.empty()) text += fmt::format("angle = {}\naxis = {}\n", written.angle, written.axis);
+    if (it.layer) text += layer(*it.layer);
     return text;
 }
 

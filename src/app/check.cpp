@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/tetrahedron.h"
 #include "io/vtk.h"
+#include "mesh/prisms.h"
 #include "mesh/quality.h"
 #include "mesh/verify.h"
 
@@ -26,9 +27,9 @@ constexpr std::array dihedral_edges = {0.0,   20.0,  40.0,  60.0,  80.0,
 
 /// The cells of one region, or of all.
 struct Sample {
-    std::size_t tets = 0;
-    double volume = 0;             // [m^3]
-    std::vector<double> aspect;    // R/r, per cell
+    std::size_t tets = 0, prisms = 0;
+    double volume = 0;             // [m^3] of both
+    std::vector<double> aspect;    // R/r, per tet
     std::vector<double> dihedral;  // [deg], six per tet
 };
 using Samples = std::vector<std::pair<std::string, Sample>>;  // by what the rows are called
@@ -44,6 +45,11 @@ void add(Sample& sample, const Mesh& mesh, Tet t) {
         sample.dihedral.push_back(angle * (180 / std::numbers::pi));
 }
 
+void add(Sample& sample, const Mesh& mesh, const Prism& prism) {
+    ++sample.prisms;
+    sample.volume += prism_volume(prism_corners(mesh, prism));
+}
+
 /// Per region in order, and last of all cells, where there are several regions. A file with more regions than
 /// are of use to read (its "region" may be something else) is reported as a whole.
 Samples samples_of(const Mesh& mesh) {
@@ -53,6 +59,10 @@ Samples samples_of(const Mesh& mesh) {
     for (const Tet t : mesh.tets.indices()) {
         add(all, mesh, t);
         if (by_region.size() <= most) add(by_region[mesh.region[t]], mesh, t);
+    }
+    for (const Prism& prism : all_prisms(mesh)) {
+        add(all, mesh, prism);
+        if (by_region.size() <= most) add(by_region[layer_of(mesh, prism.layer).region], mesh, prism);
     }
     Samples samples;
     if (by_region.size() <= most)
@@ -91,9 +101,9 @@ std::string first_fault(const Mesh& mesh) {
 
 std::size_t count_boundary_facets(const Mesh& mesh) {
     std::size_t count = 0;
-    for (const auto& neighbours : mesh.neighbour)
-        count +=
-            static_cast<std::size_t>(std::ranges::count_if(neighbours, [](Tet n) { return !n.exists(); }));
+    for (const auto& patches : mesh.patch)
+        count += static_cast<std::size_t>(
+            std::ranges::count_if(patches, [](Patch p) { return p.exists() && p.value < box_faces; }));
     return count;
 }
 
@@ -107,14 +117,37 @@ std::string counts(const Mesh& mesh) {
     return fmt::format(
         "\nvertices        {:>10}\ntets            {:>10}\nprisms          {:>10}\n"
         "boundary facets {:>10}\nregions         {:>10}\n",
-        count_vertices(mesh), count_tets(mesh), 0, count_boundary_facets(mesh), count_regions(mesh));
+        count_vertices(mesh), count_tets(mesh), count_prisms(mesh), count_boundary_facets(mesh), count_regions(mesh));
 }
 
 std::string volumes(const Samples& samples) {
     std::string text =
         fmt::format("\n{:>6} {:>10} {:>10} {:>22}\n", "region", "tets", "prisms", "volume [m^3]");
     for (const auto& [name, sample] : samples)
-        text += fmt::format("{:>6} {:>10} {:>10} {:>22.12e}\n", name, sample.tets, 0, sample.volume);
+        text += fmt::format("{:>6} {:>10} {:>10} {:>22.12e}\n", name, sample.tets, sample.prisms, sample.volume);
+    return text;
+}
+
+/// Of each prism layer, what became of it; heights in micrometres.
+std::string layers(const Mesh& mesh) {
+    if (mesh.layers.empty()) return {};
+    std::string text = fmt::format("\nprism layers: least scaled corner Jacobian (1 is perfect), heights [um]\n"
+                                   "{:>4} {:>6} {:>5} {:>8} {:>8} {:>15} {:>13} {:>14}\n",
+                                   "body", "region", "count", "prisms", "Jacobian", "first height", "growth",
+                                   "thickness");
+    const auto range = [](double least, double most, double unit, const char* form) {
+        return fmt::format(fmt::runtime(form), least / unit) + " - " + fmt::format(fmt::runtime(form), most / unit);
+    };
+    constexpr double micrometre = 1e-6;  // [m]
+    for (std::size_t l = 0; l < mesh.layers.size(); ++l) {
+        const PrismLayer& layer = mesh.layers[l];
+        const LayerSummary s = summarise_layer(mesh, Layer(l));
+        text += fmt::format("{:>4} {:>6} {:>5} {:>8} {:>8.4f} {:>15} {:>13} {:>14}\n", layer.body.value,
+                            layer.region.value, layer.count, s.prisms, s.min_jacobian,
+                            range(s.min_first_height, s.max_first_height, micrometre, "{:.4g}"),
+                            range(s.min_growth, s.max_growth, 1, "{:.3f}"),
+                            range(s.min_thickness, s.max_thickness, micrometre, "{:.4g}"));
+    }
     return text;
 }
 
@@ -154,19 +187,19 @@ std::string worst_cell(const Mesh& mesh, const Sample& all) {
 
 CheckReport check_file(const std::filesystem::path& path) {
     Cells cells = read_vtu_cells(path);
-    const std::size_t vertices = cells.position.size(), tets = cells.tets.size();
+    const std::size_t vertices = cells.position.size(), tets = cells.tets.size(), prisms = cells.prisms.size();
     Mesh mesh;
     try {
         mesh = make_frame(std::move(cells)).mesh;
     } catch (const FileError& error) {
         return {.valid = false,
-                .text = fmt::format("{}: invalid\n{}\nvertices {:>10}\ntets     {:>10}\n", path.string(),
-                                    wrapped(error.what()), vertices, tets)};
+                .text = fmt::format("{}: invalid\n{}\nvertices {:>10}\ntets     {:>10}\nprisms   {:>10}\n",
+                                    path.string(), wrapped(error.what()), vertices, tets, prisms)};
     }
     const std::string fault = first_fault(mesh);
     const Samples samples = samples_of(mesh);
     std::string text = fmt::format("{}: {}\n", path.string(), fault.empty() ? "valid" : "invalid") +
-                       wrapped(fault) + counts(mesh) + volumes(samples) +
+                       wrapped(fault) + counts(mesh) + volumes(samples) + layers(mesh) +
                        table("aspect ratio R/r (3 is perfect)", samples, &Sample::aspect) +
                        table("dihedral angles [deg]", samples, &Sample::dihedral) + histograms(samples) +
                        worst_cell(mesh, samples.back().second);

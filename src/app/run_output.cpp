@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "io/file.h"
 #include "io/vtk.h"
+#include "mesh/prisms.h"
 
 #include <fmt/format.h>
 
@@ -66,6 +67,7 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
     row.attempts = report.attempts;
     row.vertices = quality_->vertices;
     row.tets = quality_->tets;
+    row.prisms = count_prisms(state.moving.reference());
     row.max_aspect_ratio = quality_->max_aspect_ratio;
     row.p999_aspect_ratio = quality_->p999_aspect_ratio;
     row.min_dihedral = quality_->min_dihedral;

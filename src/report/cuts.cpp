@@ -1,6 +1,7 @@
 #include "report/cuts.h"
 
 #include "io/vtk.h"
+#include "mesh/prisms.h"
 #include "report/picture.h"
 #include "report/svg.h"
 
@@ -42,13 +43,15 @@ struct Bounds3 {
 
 Spot spot_of(const Mesh& mesh) {
     Bounds3 body, all;
-    for (const Tet t : mesh.tets.indices()) {
-        if (!alive(mesh, t)) continue;
-        for (const Vertex v : mesh.tets[t]) {
-            all.include(mesh.position[v]);
-            if (mesh.region[t] == Region(1)) body.include(mesh.position[v]);
-        }
-    }
+    const auto include = [&](Vertex v, Region region) {
+        all.include(mesh.position[v]);
+        if (region == Region(1)) body.include(mesh.position[v]);
+    };
+    for (const Tet t : mesh.tets.indices())
+        for (int corner = 0; corner < 4 && alive(mesh, t); ++corner)
+            include(mesh.tets[t][static_cast<std::size_t>(corner)], mesh.region[t]);
+    for (const Prism& prism : all_prisms(mesh))
+        for (const Vertex v : prism_vertices(mesh, prism)) include(v, layer_of(mesh, prism.layer).region);
     if (body.empty()) return {0.5 * (all.min + all.max), 0};
     const Vec3 extent = body.max - body.min;
     return {0.5 * (body.min + body.max), 0.5 * std::max({extent.x, extent.y, extent.z})};
@@ -144,7 +147,7 @@ std::string draw_cuts(const RunFiles& run) {
     const std::vector<CutFrame> frames = read_cuts(run);
     const char* axis = axis_names[static_cast<std::size_t>(axis_across_path(frames))];
     const auto cells = [](const CutFrame& f, const CutWindow& window) {
-        return draw_cells(f.frame.mesh, f.cut, window);
+        return draw_cells(f.cut, window);
     };
     std::string html =
         std::string(

@@ -47,8 +47,11 @@ std::string opening(const Drawing& drawing, const char* kind) {
            pixels(drawing.height) + "\" role=\"img\">";
 }
 
-std::string region_class(Region region) {
-    return region == surroundings ? "r0" : "r" + std::to_string(1 + (region.value - 1) % body_classes);
+/// Of the cells in one colour: a region's tets, or its prisms.
+std::string cells_class(Region region, bool of_prisms) {
+    const int number = region == surroundings ? 0 : 1 + (region.value - 1) % body_classes;
+    std::string name = of_prisms ? "p" : "r";
+    return name += std::to_string(number);
 }
 
 struct ValuedPoint {
@@ -126,18 +129,18 @@ CutWindow narrowed(CutWindow window, std::span<const CutPolygon> cut, Point2 mid
     return window;
 }
 
-std::string draw_cells(const Mesh& mesh, std::span<const CutPolygon> cut, const CutWindow& window) {
+std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window) {
     const Drawing drawing = drawing_of(window);
-    std::map<Region, std::string> paths;
+    std::map<std::pair<Region, bool>, std::string> paths;
     for (const CutPolygon& polygon : cut) {
         if (!seen(polygon, window)) continue;
         std::vector<Point2> places;
         for (const CutCorner& corner : corners(polygon)) places.push_back(on_drawing(drawing, corner.place));
-        paths[mesh.region[polygon.tet]] += polygon_path(places);
+        paths[{polygon.region, polygon.of_prism}] += polygon_path(places);
     }
     std::string svg = opening(drawing, "picture cells");
-    for (const auto& [region, path] : paths) {
-        svg += "<path class=\"" + region_class(region) + "\" d=\"" + path + "\"/>";
+    for (const auto& [cells, path] : paths) {
+        svg += "<path class=\"" + cells_class(cells.first, cells.second) + "\" d=\"" + path + "\"/>";
     }
     return svg + "</svg>";
 }

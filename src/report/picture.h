@@ -21,9 +21,9 @@ struct CutWindow {
 [[nodiscard]] CutWindow narrowed(CutWindow window, std::span<const CutPolygon> cut, Point2 middle,
                                  std::size_t most);
 
-/// The cells of a cut as inline SVG, every region in its colour (class r0, r1, ... of the page).
-[[nodiscard]] std::string draw_cells(const Mesh& mesh, std::span<const CutPolygon> cut,
-                                     const CutWindow& window);
+/// The cells of a cut as inline SVG, every region in its colour (class r0, r1, ... of the page), its prisms in
+/// a shade of their own (p0, p1, ...).
+[[nodiscard]] std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window);
 
 /// A field on a cut as inline SVG, in bands of one colour each between `least` and `most`: exact level lines.
 [[nodiscard]] std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,

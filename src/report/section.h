@@ -24,15 +24,18 @@ struct CutCorner {
     Point2 place;  // [m] along right and up from the origin
 };
 
-/// What the plane cuts out of a tet: a triangle or a quad, convex, counter-clockwise as seen.
+/// What the plane cuts out of a cell, counter-clockwise as seen: a triangle or a quad, convex, of a tet; up to seven
+/// corners of a prism.
 struct CutPolygon {
-    Tet tet;
+    Region region;
+    bool of_prism = false;
     int size = 3;  // corners
-    std::array<CutCorner, 4> corners;
+    std::array<CutCorner, 7> corners;
 };
 
-/// All tets cut by the plane; those it touches without area are left out. A facet in the plane is cut out of
-/// one of its two tets, so that every place of the plane inside the mesh is covered once.
+/// All cells cut by the plane; those it touches without area are left out. A facet in the plane is cut out of
+/// one of its two cells, so that every place of the plane inside the mesh is covered once. The curve in which the
+/// plane meets a bent quad of a prism is drawn straight.
 [[nodiscard]] std::vector<CutPolygon> cut_mesh(const Mesh& mesh, const CutPlane& plane);
 
 [[nodiscard]] inline std::span<const CutCorner> corners(const CutPolygon& polygon) {
@@ -40,7 +43,7 @@ struct CutPolygon {
 }
 [[nodiscard]] double area(const CutPolygon& polygon);  // [m^2]
 
-/// The value there of a field that is linear in every tet.
+/// The value there of a field that is linear along every edge.
 [[nodiscard]] inline double value_at(const CutCorner& corner, const Array<Vertex, double>& field) {
     return (1 - corner.share) * field[corner.a] + corner.share * field[corner.b];
 }

@@ -10,17 +10,19 @@ inline constexpr std::string_view page_style = R"css(
   --page: #f6f7f9; --card: #ffffff; --ink: #1b2530; --soft: #5c6875; --rule: #dde2e8;
   --s0: #2468b4; --s1: #e07b1a; --s2: #2f9e77; --limit: #c2303a;
   --good: #2f8f5b; --unfinished: #b7791f; --bad: #c2303a;
-  --r0: #dbe9f7; --edge: #51637a; --r1: #f59a3c; --r2: #d9636b; --r3: #e8c14a; --r4: #b07cc0; }
+  --r0: #dbe9f7; --edge: #51637a; --r1: #f59a3c; --r2: #d9636b; --r3: #e8c14a; --r4: #b07cc0;
+  --p0: #7cc4a4; }
 @media (prefers-color-scheme: dark) { :root {
   --page: #12161b; --card: #1b2128; --ink: #e6ebf0; --soft: #98a4b1; --rule: #323b46;
   --s0: #6cb0f5; --s1: #f5a14b; --s2: #56c99d; --limit: #ff7b81;
   --good: #56c98a; --unfinished: #e0ab4f; --bad: #ff7b81;
-  --r0: #263748; --edge: #7f95ab; --r1: #c8701c; --r2: #a8454d; --r3: #a8882a; --r4: #80549a; } }
+  --r0: #263748; --edge: #7f95ab; --r1: #c8701c; --r2: #a8454d; --r3: #a8882a; --r4: #80549a;
+  --p0: #2f7d62; } }
 @media print { :root { color-scheme: light; --page: #fff; --card: #fff; --ink: #000; --soft: #444;
   --rule: #ccc;
   --s0: #2468b4; --s1: #e07b1a; --s2: #2f9e77; --limit: #c2303a; --good: #2f8f5b; --unfinished: #b7791f;
   --bad: #c2303a; --r0: #dbe9f7; --edge: #51637a; --r1: #f59a3c; --r2: #d9636b; --r3: #e8c14a;
-  --r4: #b07cc0; }
+  --r4: #b07cc0; --p0: #7cc4a4; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   figure, .tile { break-inside: avoid; } }
 * { box-sizing: border-box; }
@@ -60,7 +62,9 @@ path.limit { stroke: var(--limit); stroke-width: 1.6; stroke-dasharray: 6 4; }
   stroke-linejoin: round; }
 .field path { stroke-width: .5; stroke-linejoin: round; } .bar { max-width: 520px; margin-top: 8px; }
 .r0 { fill: var(--r0); } .r1 { fill: var(--r1); } .r2 { fill: var(--r2); } .r3 { fill: var(--r3); }
-.r4 { fill: var(--r4); }
+.r4 { fill: var(--r4); } .p0 { fill: var(--p0); } .p1 { fill: var(--r1); fill-opacity: .55; }
+.p2 { fill: var(--r2); fill-opacity: .55; } .p3 { fill: var(--r3); fill-opacity: .55; }
+.p4 { fill: var(--r4); fill-opacity: .55; }
 table { border-collapse: collapse; width: 100%; } td { padding: 5px 10px 5px 0;
   border-bottom: 1px solid var(--rule); }
 td:first-child { color: var(--soft); white-space: nowrap; width: 16em; }

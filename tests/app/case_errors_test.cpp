@@ -126,8 +126,6 @@ TEST(CaseErrors, Bodies) {
          "body[0].shape (line 6): must be \"sphere\" or \"ellipsoid\", got \"cube\""},
         {"\"sphere\"", "\"ellipsoid\"", "body[0].radius (line 8): an ellipsoid has axes = [a, b, c] instead"},
         {"\"ellipsoid\"", "\"sphere\"", "body[1].axes (line 17): a sphere has a radius instead"},
-        {"[body.motion]", "[body.layer]\ncount = 4\n[body.motion]",
-         "body[0].layer (line 9): prism layers are not available yet; leave it out"},
     });
 }
 

@@ -134,7 +134,7 @@ TEST(Cases, OfTheProjectAreRight) {
         expect_same(it, parse_case(to_toml(it), "written.toml"));
         ++read;
     }
-    EXPECT_GE(read, 3);
+    EXPECT_GE(read, 7);
 }
 
 TEST(Cases, TheTwoDropletsPassAtHalfARadius) {
@@ -146,6 +146,22 @@ TEST(Cases, TheTwoDropletsPassAtHalfARadius) {
         least = std::min(least, distance(a.centre, b.centre) - a.semi_axes.x - b.semi_axes.x);
     }
     EXPECT_NEAR(least, 0.5 * it.domain.bodies[0].shape.semi_axes.x, 1e-12);
+}
+
+TEST(Cases, TheLayeredDropletsPassTheWallAndEachOtherAtThreeTenthsOfARadius) {
+    const auto case_named = [](const char* name) { return read_case(std::filesystem::path(KROPLA_CASES) / name); };
+    const Case wall = case_named("near_wall.toml"), miss = case_named("near_miss.toml");
+    double to_wall = 1, to_other = 1;
+    for (int i = 0; i <= 1000; ++i) {
+        to_wall = std::min(to_wall, bounds(shape_at(wall.domain.bodies[0], wall.time.end * i / 1000)).min.z);
+        const double t = miss.time.end * i / 1000;
+        const Shape a = shape_at(miss.domain.bodies[0], t), b = shape_at(miss.domain.bodies[1], t);
+        to_other = std::min(to_other, distance(a.centre, b.centre) - a.semi_axes.x - b.semi_axes.x);
+    }
+    EXPECT_NEAR(to_wall, 0.3e-3, 1e-12);
+    EXPECT_NEAR(to_other, 0.3e-3, 1e-12);
+    for (const Case& it : {wall, miss, case_named("droplet_layer.toml"), case_named("tumbling.toml")})
+        for (const Body& body : it.domain.bodies) EXPECT_TRUE(body.layer);
 }
 
 TEST(Estimate, CountsWhatAUniformSizeGives) {

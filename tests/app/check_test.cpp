@@ -1,6 +1,7 @@
 #include "app/check.h"
 
 #include "../io/examples.h"
+#include "../io/layered.h"
 #include "app/distribution.h"
 #include "app/hanging.h"
 #include "base/error.h"
@@ -75,15 +76,50 @@ TEST(Check, AGoodMeshIsValid) {
     EXPECT_TRUE(says(report, "worst cell: "));
 }
 
+TEST(Check, PrismsAreCountedAndEveryLayerIsSummedUp) {
+    const Mesh mesh = layered_cube(4, {3, 2});
+    const CheckReport report = check(mesh);
+    SCOPED_TRACE(report.text);
+    EXPECT_TRUE(says(report, "tets 384 prisms 240 boundary facets 192 regions 2 "));
+    EXPECT_TRUE(says(report, "0 336 144 "));
+    EXPECT_TRUE(says(report, "1 48 96 "));
+    EXPECT_TRUE(says(report, "all 384 240 6.400000000000e-08"));
+    for (const Layer l : {Layer(0), Layer(1)}) {
+        const LayerSummary s = summarise_layer(mesh, l);
+        EXPECT_TRUE(says(report, fmt::format("1 {} {} {} {:.4f} {:.4g} - {:.4g} 1.300 - 1.300 {:.4g} - {:.4g} ",
+                                             l.value, 3 - l.value, s.prisms, s.min_jacobian, s.min_first_height * 1e6,
+                                             s.max_first_height * 1e6, s.min_thickness * 1e6,
+                                             s.max_thickness * 1e6)));
+    }
+}
+
+TEST(Check, PrismsThatAreNoStacksAreInvalidNotUnreadable) {
+    const Folder folder;
+    const std::string layer = "<DataArray type=\"Int32\" Name=\"layer\" format=\"ascii\">0 2</DataArray>";
+    put(folder / "a.vtu", text_of({.points = "0 0 0  1 0 0  0 1 0  0 0 1  0 0 -1  1 0 -1  0 1 -1",
+                                   .point_count = 7,
+                                   .connectivity = "0 1 2 3  4 6 5 0 2 1",
+                                   .offsets = "4 10",
+                                   .types = "10 13",
+                                   .cell_count = 2,
+                                   .cell_arrays = layer}));
+    const CheckReport report = check_file(folder / "a.vtu");
+    EXPECT_FALSE(report.valid);
+    EXPECT_TRUE(says(report, ": invalid of 1 prisms only 0 stand in stacks on a wall vertices 7 tets 1 prisms 1 "))
+        << report.text;
+}
+
 TEST(Check, KeepsToEightyColumns) {
-    Mesh mesh = cube_of_tets(4);
-    std::swap(mesh.tets[Tet(100)][0], mesh.tets[Tet(100)][1]);
-    std::istringstream lines(check(mesh).text);
-    std::string line;
-    std::getline(lines, line);  // the file's name has any length
-    while (std::getline(lines, line)) {
-        EXPECT_LE(line.size(), 80u) << line;
-        EXPECT_FALSE(line.ends_with(' ')) << line;
+    Mesh inverted = cube_of_tets(4);
+    std::swap(inverted.tets[Tet(100)][0], inverted.tets[Tet(100)][1]);
+    for (const Mesh& mesh : {inverted, layered_cube(4, {3, 2})}) {
+        std::istringstream lines(check(mesh).text);
+        std::string line;
+        std::getline(lines, line);  // the file's name has any length
+        while (std::getline(lines, line)) {
+            EXPECT_LE(line.size(), 80u) << line;
+            EXPECT_FALSE(line.ends_with(' ')) << line;
+        }
     }
 }
 

@@ -1,3 +1,4 @@
+#include "../io/layered.h"
 #include "report/picture.h"
 #include "tiny_run.h"
 
@@ -39,7 +40,7 @@ double area_of_paths(const std::string& svg, const std::string& attributes) {
 
 TEST(Picture, ShowsEveryRegionInItsColour) {
     const CutRow row;
-    const std::string svg = draw_cells(row.mesh, row.cut, extent(row.cut));
+    const std::string svg = draw_cells(row.cut, extent(row.cut));
     EXPECT_NE(svg.find("viewBox=\"0 0 300 100\""), std::string::npos);
     EXPECT_NEAR(area_of_paths(svg, "class=\"r0\""), 20000, 60);  // coordinates are rounded to 0.1
     EXPECT_NEAR(area_of_paths(svg, "class=\"r1\""), 10000, 60);
@@ -57,7 +58,7 @@ TEST(Picture, DividesAFieldIntoBandsWithoutGaps) {
 
 TEST(Picture, LeavesOutWhatIsOutsideTheWindow) {
     const CutRow row;
-    const std::string svg = draw_cells(row.mesh, row.cut, {{1.1, 0.1}, {1.9, 0.9}});
+    const std::string svg = draw_cells(row.cut, {{1.1, 0.1}, {1.9, 0.9}});
     EXPECT_NE(svg.find("class=\"r1\""), std::string::npos);
     EXPECT_EQ(svg.find("class=\"r0\""), std::string::npos);
 }
@@ -70,6 +71,22 @@ TEST(Picture, NarrowsItsWindowUntilFewEnoughAreSeen) {
     EXPECT_LT(fewer.max.x, all.max.x);
     EXPECT_NEAR(fewer.min.x + fewer.max.x, 20, 1e-9);
     EXPECT_EQ(narrowed(all, cut, {10, 10}, cut.size()).max.x, all.max.x);
+}
+
+TEST(Picture, ShowsPrismsInAShadeOfTheirOwn) {
+    const Mesh mesh = layered_cube(4, {3, 2});
+    const auto cut = cut_mesh(mesh, plane_across(1, {0, 1.9e-3, 0}));
+    const std::string svg = draw_cells(cut, extent(cut));
+    double pixels = 0, outside = 0;
+    for (const char* cells : {"r0", "r1", "p0", "p1"}) {
+        const double own = area_of_paths(svg, "class=\"" + std::string(cells) + "\"");
+        EXPECT_GT(own, 1000) << cells;
+        pixels += own;
+    }
+    for (const CutPolygon& polygon : cut)
+        if (polygon.of_prism && polygon.region == surroundings) outside += area(polygon);
+    EXPECT_NEAR(pixels, 300 * 300, 500);
+    EXPECT_NEAR(area_of_paths(svg, "class=\"p0\""), outside * (300 / 4e-3) * (300 / 4e-3), 200);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
+#include "../io/layered.h"
 #include "base/random.h"
 #include "report/section.h"
 #include "tiny_run.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace kropla {
@@ -51,7 +53,7 @@ TEST(Section, KnowsTheRegions) {
     const Mesh mesh = grid_of_cubes({3, 1, 2}, [](int i, int, int) { return Region(i == 1 ? 1 : 0); });
     double body = 0, rest = 0;
     for (const CutPolygon& polygon : cut_mesh(mesh, plane_across(1, {0, 0.37, 0}))) {
-        (mesh.region[polygon.tet] == Region(1) ? body : rest) += area(polygon);
+        (polygon.region == Region(1) ? body : rest) += area(polygon);
     }
     EXPECT_NEAR(body, 2, 1e-14);
     EXPECT_NEAR(rest, 4, 1e-14);
@@ -79,6 +81,38 @@ TEST(Section, OfRandomPlanesGivesLinearFieldsExactlyAndConvexPolygons) {
     }
     EXPECT_GT(quads, 1000U);
     EXPECT_GT(triangles, 1000U);
+}
+
+// Tets and prisms together cover the section of the cube, also where the quads of the prisms are bent; no overlap
+// and no gap, as all neighbours share their corners.
+TEST(Section, OfLayersCoversTheSquareOnce) {
+    for (const double bend : {0.0, 0.01e-3}) {
+        Mesh mesh = layered_cube(4, {3, 2});
+        Random random{.seed = 11};
+        for (const PrismLayer& layer : mesh.layers)
+            for (const Vertex v : layer.columns)
+                for (int axis = 0; axis < 3; ++axis) mesh.position[v][axis] += random.uniform(-bend, bend);
+        for (const double at : {1.3e-3, 2e-3, 2.71e-3}) {
+            SCOPED_TRACE("seed 11, bent by " + std::to_string(bend * 1e3) + " mm, at " + std::to_string(at * 1e3));
+            const auto cut = cut_mesh(mesh, plane_across(2, {0, 0, at}));
+            EXPECT_NEAR(total_area(cut), 16e-6, 1e-18);
+            EXPECT_GT(std::ranges::count_if(cut, &CutPolygon::of_prism), 20);
+        }
+    }
+}
+
+TEST(Section, OfAPrismIsItsTriangleOrItsQuad) {
+    const Mesh mesh = layered_cube(4, {1, 0});
+    const Vec3 x = mesh.position[column_vertex(mesh.layers[0], 0, 0)];
+    std::size_t triangles = 0, quads = 0;
+    for (const CutPolygon& polygon : cut_mesh(mesh, plane_across(0, x))) {
+        if (!polygon.of_prism) continue;
+        EXPECT_EQ(polygon.region, surroundings);
+        (polygon.size == 3 ? triangles : quads) += 1;
+        for (const CutCorner& corner : corners(polygon)) EXPECT_LT(corner.a, corner.b);
+    }
+    EXPECT_GT(triangles, 0U);
+    EXPECT_GT(quads, 0U);
 }
 
 }  // namespace
