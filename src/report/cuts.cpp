@@ -1,6 +1,7 @@
 #include "report/cuts.h"
 
 #include "io/vtk.h"
+#include "io/xml.h"
 #include "report/picture.h"
 #include "report/svg.h"
 

@@ -4,7 +4,7 @@
 #include "simulate/carried.h"
 
 #include "mesh/cells.h"
-#include "simulate/partition.h"
+#include "mesh/topology.h"
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ constexpr double least_extent = 1e-9;  // [-] a flatter cloud, by its determinan
 
 std::vector<Vertex> interface_vertices(const Mesh& mesh, Region body) {
     std::vector<Vertex> vertices;
-    for (Tet t : living_tets(mesh, body)) {
+    for (Tet t : all_tets(mesh, body)) {
         for (std::size_t corner = 0; corner < 4; ++corner) {
             const Tet other = mesh.neighbour[t][corner];
             if (!other.exists() || mesh.region[other] == body) continue;
@@ -79,7 +79,7 @@ Array<Vertex, Vec3> carried_along(const Mesh& before, const Mesh& current, Regio
     if (interface.empty()) return before.position;
     const WholeMotion motion = whole_motion(before, current, interface);
     Array<Vertex, Vec3> place = current.position;
-    for (Tet t : living_tets(current, body)) {
+    for (Tet t : all_tets(current, body)) {
         for (Vertex v : current.tets[t]) {
             const Vec3 carried = motion(before.position[v]);
             if (distance(carried, current.position[v]) > rounding * motion.extent) place[v] = carried;

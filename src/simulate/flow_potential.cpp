@@ -4,6 +4,7 @@
 #include "simulate/flow_potential.h"
 
 #include "mesh/cells.h"
+#include "mesh/topology.h"
 #include "simulate/elements.h"
 #include "simulate/linear_system.h"
 
@@ -105,7 +106,7 @@ DisplacedFlow solve_displaced_flow(const Ranks& ranks, const Mesh& before, const
     const SolverChoice choice{.name = "potential flow", .prefix = "potential_", .method = "cg",
                               .preconditioner = "sor", .relative_tolerance = 1e-14, .singular = true};
     for (Region region : resting) {
-        const std::vector<Tet> cells = living_tets(current, region);
+        const std::vector<Tet> cells = all_tets(current, region);
         Array<Vertex, double> swept = swept_by_boundary(step, cells);
         if (std::ranges::all_of(swept, [](double s) { return s == 0; })) continue;
         balance(current, cells, swept);

@@ -2,8 +2,8 @@
 #include "simulate/heat.h"
 
 #include "base/error.h"
+#include "mesh/topology.h"
 #include "simulate/elements.h"
-#include "simulate/partition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ void check_region(const HeatRegion& region, std::size_t number) {
 void check_heat(const HeatOptions& options, const Mesh& mesh) {
     for (std::size_t i = 0; i < options.regions.size(); ++i) check_region(options.regions[i], i);
     std::size_t needed = 0;
-    for (Tet t : living_tets(mesh))
+    for (Tet t : all_tets(mesh))
         needed = std::max(needed, static_cast<std::size_t>(mesh.region[t].value) + 1);
     if (options.regions.size() < needed) {
         throw CaseError("heat: the mesh has " + std::to_string(needed) +
@@ -63,7 +63,7 @@ NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
     check_heat(options, mesh);
     NodalField field{"temperature", "K", Array<Vertex, double>(mesh.position.size(), 0.0)};
     Array<Vertex, Region> region(mesh.position.size());
-    for (Tet t : living_tets(mesh)) {
+    for (Tet t : all_tets(mesh)) {
         for (Vertex v : mesh.tets[t]) region[v] = std::max(region[v], mesh.region[t]);
     }
     for (Vertex v : mesh.position.indices()) {
@@ -76,7 +76,7 @@ NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
 double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,
               Region only) {
     double sum = 0;
-    for (Tet t : living_tets(mesh, only)) {
+    for (Tet t : all_tets(mesh, only)) {
         const HeatMaterial& m = options.regions[static_cast<std::size_t>(mesh.region[t].value)].material;
         double corners_sum = 0;
         for (Vertex v : mesh.tets[t]) corners_sum += temperature[v];

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "mesh/cells.h"
+#include "mesh/topology.h"
 #include "simulate/carried.h"
 #include "simulate/elements.h"
 #include "simulate/flow_potential.h"
@@ -203,7 +204,7 @@ Array<Vertex, int> faces_with_values(const Mesh& mesh, const HeatOptions& option
             if (at < 0 || static_cast<int>(face) < at) at = static_cast<int>(face);
         }
     };
-    for_each_facet(mesh, living_tets(mesh), options, HeatFace::Kind::value, note);
+    for_each_facet(mesh, all_tets(mesh), options, HeatFace::Kind::value, note);
     return face_at;
 }
 
@@ -270,7 +271,7 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
     if (!(dt > 0)) throw CaseError("heat: the step must be positive, got " + std::to_string(dt) + " s");
     const DisplacedFlow flow =
         solve_displaced_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt);
-    const std::vector<Tet> cells = living_tets(current);
+    const std::vector<Tet> cells = all_tets(current);
     const Numbering numbering = number_vertices(current, cells, ranks.count);
     const StepData step{.before = before,
                         .current = current,

@@ -77,14 +77,6 @@ Numbering number_vertices(const Mesh& mesh, const std::vector<Tet>& cells, int r
     return numbering;
 }
 
-std::vector<Tet> living_tets(const Mesh& mesh, Region only) {
-    std::vector<Tet> cells;
-    for (Tet t : mesh.tets.indices()) {
-        if (alive(mesh, t) && (!only.exists() || mesh.region[t] == only)) cells.push_back(t);
-    }
-    return cells;
-}
-
 std::vector<Tet> cells_of_rank(const Mesh& mesh, const std::vector<Tet>& cells, const Numbering& numbering,
                                int rank) {
     std::vector<Tet> mine;

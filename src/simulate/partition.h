@@ -23,9 +23,6 @@ struct Numbering {
 /// Numbers the vertices of the tets of `cells` (each alive) for so many ranks.
 [[nodiscard]] Numbering number_vertices(const Mesh& mesh, const std::vector<Tet>& cells, int ranks);
 
-/// All tets of the mesh that are no free slots, in order; or those of one region.
-[[nodiscard]] std::vector<Tet> living_tets(const Mesh& mesh, Region only = {});
-
 /// Those of `cells` that have an unknown of the rank: what it assembles. Cells astride a cut are on both
 /// lists, so that every rank fills its rows alone and in the same order, whatever the number of ranks.
 [[nodiscard]] std::vector<Tet> cells_of_rank(const Mesh& mesh, const std::vector<Tet>& cells,

@@ -1,7 +1,7 @@
 #include "meshes.h"
 #include "session.h"
+#include "mesh/topology.h"
 #include "simulate/elements.h"
-#include "simulate/partition.h"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ void name_inner_and_outer(Mesh& mesh, double between) {
 /// Integral of |grad T|^2: for conductivity 1 the heat flow times the temperature difference.
 double dissipation(const Mesh& mesh, const NodalField& field) {
     double sum = 0;
-    for (Tet t : living_tets(mesh)) {
+    for (Tet t : all_tets(mesh)) {
         const LinearTet tet = linear_tet(corners(mesh, t));
         Vec3 gradient;
         for (std::size_t i = 0; i < 4; ++i) {

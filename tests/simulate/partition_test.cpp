@@ -1,4 +1,5 @@
 #include "meshes.h"
+#include "mesh/topology.h"
 #include "simulate/partition.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@ namespace {
 
 TEST(Partition, NumbersEachVertexOnceAndSharesThemEqually) {
     const Mesh mesh = unit_cube(8);  // 729 vertices
-    const Numbering numbering = number_vertices(mesh, living_tets(mesh), 4);
+    const Numbering numbering = number_vertices(mesh, all_tets(mesh), 4);
     ASSERT_EQ(numbering.rows(), count_vertices(mesh));
     for (int r = 0; r < numbering.rows(); ++r) {
         EXPECT_EQ(numbering.row[numbering.vertex[static_cast<std::size_t>(r)]], r);
@@ -23,7 +24,7 @@ TEST(Partition, NumbersEachVertexOnceAndSharesThemEqually) {
 
 TEST(Partition, PiecesAreCompact) {
     const Mesh mesh = unit_cube(8);
-    const std::vector<Tet> cells = living_tets(mesh);
+    const std::vector<Tet> cells = all_tets(mesh);
     const Numbering numbering = number_vertices(mesh, cells, 2);
     std::size_t listed = 0;
     for (int rank = 0; rank < 2; ++rank) listed += cells_of_rank(mesh, cells, numbering, rank).size();
@@ -34,7 +35,7 @@ TEST(Partition, PiecesAreCompact) {
 
 TEST(Partition, OfOneRegionLeavesOutTheOthers) {
     const Mesh mesh = unit_cube_with_body(8);
-    const std::vector<Tet> body = living_tets(mesh, Region(1));
+    const std::vector<Tet> body = all_tets(mesh, Region(1));
     EXPECT_EQ(body.size(), 6u * 4 * 4 * 4);
     const Numbering numbering = number_vertices(mesh, body, 1);
     EXPECT_EQ(numbering.rows(), 5 * 5 * 5);
