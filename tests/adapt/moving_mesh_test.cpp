@@ -53,6 +53,17 @@ int step(MovingMesh& moving, double dt) {
     return 0;
 }
 
+/// The longest edge in terms of the target size at its middle.
+double longest_edge(const Mesh& mesh, const Snapshot& at) {
+    double longest = 0;
+    for (Vertex v : all_vertices(mesh))
+        for (Vertex w : adjacent_vertices(mesh, v)) {
+            const Vec3 a = mesh.position[v], b = mesh.position[w];
+            longest = std::max(longest, distance(a, b) / target_size(at, (a + b) / 2));
+        }
+    return longest;
+}
+
 /// The way from t = 0 to 1 in `steps` steps, what is promised checked after each.
 void expect_good_crossing(const Domain& domain, std::uint64_t seed, int steps) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -74,6 +85,8 @@ void expect_good_crossing(const Domain& domain, std::uint64_t seed, int steps) {
         all += moving.statistics().optimised;
         all += moving.statistics().remeshed;
     }
+    // What the bodies leave behind them is filled again.
+    EXPECT_LE(longest_edge(moving.reference(), snapshot(domain, moving.time())), 2.5);
     EXPECT_EQ(all.global_remeshes, 0);
     EXPECT_GT(all.swaps, 0);
     EXPECT_GT(all.splits, 0);
