@@ -1,7 +1,7 @@
 # make            builds build/release/bin/kropla
-# make demo       runs the droplet case into demo/ and draws its pictures
+# make demo       runs the droplet case into demo/droplet and draws demo/pictures; what was there is replaced
 # make test       builds and runs all tests
-# make bench      builds and runs the benchmarks
+# make bench      builds and runs the benchmarks; beside CGAL, if libcgal-dev is installed
 # Each installs the Debian packages that are missing.
 
 .PHONY: all demo test bench packages configure clean
@@ -17,6 +17,7 @@ configure: packages
 	@rm -f build-configure.log
 
 demo: all
+	rm -rf demo/droplet demo/pictures
 	build/release/bin/kropla run cases/droplet.toml --out demo/droplet
 	tools/draw-pictures demo/droplet demo/pictures
 
@@ -25,7 +26,7 @@ test: all
 
 bench: packages
 	cmake --preset bench
-	cmake --build --preset bench
+	cmake --build --preset bench --target kropla_bench
 	build/bench/bin/kropla_bench
 
 clean:

@@ -14,6 +14,7 @@ constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
+constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
 constexpr double harder = 0.8;           // there, cells must be better by this than elsewhere
 
 /// The vertices of a body's tets and of its layers' columns, in order.
@@ -82,6 +83,11 @@ const Changes& MovingMesh::refine() {
     changes = adapt_to_size(current_, cells, at_time, options);
     cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());
     changes += improve(current_, cells, at_time, options);
+    if (trouble_.size() > 1) {  // it was not enough the last time
+        options.floor = std::min(options_.floor, trouble_floor);
+        options.whole_region = false;
+        changes += repair(current_, cells_near(current_, trouble_, at_time), at_time, options);
+    }
     before_ = current_;
     note_touched(current_, changes.cells);
     return changes;
@@ -90,7 +96,8 @@ const Changes& MovingMesh::refine() {
 void MovingMesh::move_boundary(double t) {
     target_time_ = t;
     double here = time_;
-    for (statistics_.legs = 1; statistics_.legs <= most_legs; ++statistics_.legs) {
+    while (statistics_.legs < most_legs) {
+        ++statistics_.legs;
         auto report = kropla::move_boundary(current_, domain_, bodies_, here, t);
         note_touched(current_, report.cells);
         if (report.arrived) {

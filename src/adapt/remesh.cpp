@@ -329,6 +329,7 @@ void climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, C
         changes.largest_ring = std::max(changes.largest_ring, ring);
         return;
     }
+    if (!options.whole_region) return;
     const auto cavity = cluster_remesh(mesh, whole_region(mesh, mesh.region[bad]), at_time, options);
     if (!cavity) return;
     unite(mesh, *cavity, changes);

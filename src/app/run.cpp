@@ -164,12 +164,18 @@ int run(const RunOptions& options) {
     try {
         check_run_folder(options);
         MPI_Barrier(ranks.communicator);  // all have looked before one writes
-        return run_with(options, ranks);
+        const int code = run_with(options, ranks);
+        return ranks.rank == 0 ? code : 0;
     } catch (const FileError& error) {
         if (ranks.count == 1) throw;
+        if (ranks.rank != 0) return 0;
         // The other ranks write nothing and would wait for this one for ever.
         fmt::print(stderr, "kropla: {}\n", error.what());
         MPI_Abort(ranks.communicator, 5);
+        throw;
+    } catch (const std::runtime_error&) {
+        // All ranks meet it; a rank that ended with a code of its own would have rank 0 killed before it has spoken.
+        if (ranks.rank != 0) return 0;
         throw;
     }
 }

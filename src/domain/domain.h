@@ -19,7 +19,8 @@ struct Box {
 /// Where a body is at time t [s].
 using Motion = std::function<Pose(double t)>;
 
-/// The prism layer asked for at a body's surface: column heights first_height * growth^k, k = 0 ... count - 1.
+/// The prism layer asked for at a body's surface; the k-th prism of a column, from 0, is
+/// first_height * growth^k high.
 struct LayerOptions {
     enum class Side { outside, inside, both };  // in the surroundings, in the body, or a layer each
 
@@ -27,8 +28,8 @@ struct LayerOptions {
     double first_height = 2e-5;  // [m] of the prism at the wall, positive
     double growth = 1.3;         // [-] from one prism of a column to the next, positive
     Side side = Side::outside;
-    std::optional<double> min_gap = {};  // [m] least distance from the body to a wall or to another body at which
-                                         //   the layer is kept; none: first_height
+    std::optional<double> min_gap = {};  // [m] least distance from the body to a wall or to another body
+                                         //   at which the layer is kept; none: first_height
 };
 
 /// The height of an unsqueezed column [m]; may be infinite.
@@ -45,7 +46,7 @@ struct LayerOptions {
 
 struct Body {
     std::string name;
-    Shape shape;                                     // at t = 0 with the motion's displacement not yet applied
+    Shape shape;  // at t = 0 with the motion's displacement not yet applied
     Motion motion = [](double) { return Pose{}; };
     std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
 };
@@ -83,20 +84,20 @@ struct Snapshot {
 /// The target edge length at x [m].
 [[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
 
-/// Throws DomainError, saying which bodies, where, the distance found and the size that would do, if at time t a body
-/// is outside the box, or two bodies overlap, or a gap is too narrow for the size asked (below `least_gap` surface
-/// sizes), or the surface size is too coarse for a body's curvature.
+/// Throws DomainError, saying which bodies, where, the distance found and the size that would do, if at time
+/// t a body is outside the box, or two bodies overlap, or a gap is too narrow for the size asked (below
+/// `least_gap` surface sizes), or the surface size is too coarse for a body's curvature.
 void check_placement(const Domain& domain, double t, double least_gap);
 
-/// Throws DomainError if a body's layer is of no height or overflows, or if at time t it is thicker, as asked, than the
-/// gap to a wall or to another body with its layer, or than the body's curvature allows inside, or a gap is below
-/// `least_gap(layer)`; says which body, the gap, and the largest thickness, first height and growth that would fit.
-/// Also if there are more layers than patches for them (13). In gaps that are wider than that a layer may have to be
-/// thinner than asked: layer_room.h.
+/// Throws DomainError if a body's layer is of no height or overflows, or if at time t it is thicker, as
+/// asked, than the gap to a wall or to another body with its layer, or than the body's curvature allows
+/// inside, or a gap is below `least_gap(layer)`; says which body, the gap, and the largest thickness, first
+/// height and growth that would fit. Also if there are more layers than patches for them (13). In gaps that
+/// are wider than that a layer may have to be thinner than asked: layer_room.h.
 void check_layers(const Domain& domain, double t);
 
-/// Throws DomainError if between `start` and `end`, looked at `samples` times, a motion is not finite, or takes a
-/// body out of the box or into another; says which, when and where.
+/// Throws DomainError if between `start` and `end`, looked at `samples` times, a motion is not finite, or
+/// takes a body out of the box or into another; says which, when and where.
 void check_paths(const Domain& domain, double start, double end, int samples);
 
 }  // namespace kropla

@@ -1,8 +1,8 @@
 // The distance between two ellipsoids.
 //
-// It is found by alternating projections [Cheney, Goldstein 1959, "Proximity maps for convex sets"]: from a point of
-// one to the nearest of the other and back. Planes across the way found bound the distance from below, so that it is
-// known when that is near enough.
+// It is found by alternating projections [Cheney, Goldstein 1959, "Proximity maps for convex sets"]: from a
+// point of one to the nearest of the other and back. Planes across the way found bound the distance from
+// below, so that it is known when that is near enough.
 
 #include "domain/shape.h"
 

@@ -40,10 +40,12 @@ double fitting_growth(LayerOptions layer, double room) {
 /// "; the largest layer that fits is 3.3e-05 m thick: layer.first_height of at most 5.3e-06 m, or ..."
 std::string advice(const LayerOptions& layer, double room) {
     std::string text = "; the largest layer that fits is " + rounded_down(room) + " thick";
-    const double height = layer.first_height * (room / thickness(layer)), growth = fitting_growth(layer, room);
+    const double height = layer.first_height * (room / thickness(layer)),
+                 growth = fitting_growth(layer, room);
     if (height > 0) text += ", by layer.first_height of at most " + rounded_down(height);
     if (layer.count > 1 && growth > 0)
-        text += (height > 0 ? " or" : ", by") + std::string(" layer.growth of at most ") + rounded_down(growth, "");
+        text += (height > 0 ? " or" : ", by") + std::string(" layer.growth of at most ") +
+                rounded_down(growth, "");
     return text;
 }
 
@@ -62,7 +64,8 @@ std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t
     std::vector<Nearby> found;
     for (int wall = 0; wall < 6; ++wall) {
         const int axis = wall / 2;
-        const double gap = wall % 2 == 0 ? held.min[axis] - at.box.min[axis] : at.box.max[axis] - held.max[axis];
+        const double gap =
+            wall % 2 == 0 ? held.min[axis] - at.box.min[axis] : at.box.max[axis] - held.max[axis];
         found.push_back({gap, share_of_gap * gap, own, walls[static_cast<std::size_t>(wall)]});
     }
     for (std::size_t other = 0; other < at.shapes.size(); ++other) {
@@ -70,7 +73,8 @@ std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t
         const double gap = gap_between(at.shapes[body], at.shapes[other]);
         const LayerOptions* theirs = layer_at_side(at, other, false);
         found.push_back({gap, gap * (theirs ? share_between_layers : share_of_gap),
-                         own + (theirs ? thickness(*theirs) : 0), "body \"" + domain.bodies[other].name + "\""});
+                         own + (theirs ? thickness(*theirs) : 0),
+                         "body \"" + domain.bodies[other].name + "\""});
     }
     return found;
 }
@@ -84,9 +88,11 @@ void check_values(const Body& body, double widest) {
         throw DomainError(its_layer(body) + " needs a positive layer.first_height, got " +
                           written(layer.first_height) + advice({1, widest, 1}, widest));
     if (!(layer.growth > 0) || !std::isfinite(layer.growth))
-        throw DomainError(its_layer(body) + " needs a positive layer.growth, got " + written(layer.growth, ""));
+        throw DomainError(its_layer(body) + " needs a positive layer.growth, got " +
+                          written(layer.growth, ""));
     if (!std::isfinite(thickness(layer)))
-        throw DomainError(its_layer(body) + " overflows: its thickness is not a number" + advice(layer, widest));
+        throw DomainError(its_layer(body) + " overflows: its thickness is not a number" +
+                          advice(layer, widest));
 }
 
 void check_outside(const Domain& domain, const Snapshot& at, std::size_t body) {
@@ -94,8 +100,8 @@ void check_outside(const Domain& domain, const Snapshot& at, std::size_t body) {
     for (const Nearby& n : nearby(domain, at, body)) {
         const std::string gap = "the gap of " + written(n.gap) + " to " + n.name;
         if (n.gap < least_gap(layer))
-            throw DomainError(its_layer(domain.bodies[body]) + " has no room: " + gap + " is below layer.min_gap = " +
-                              written(least_gap(layer)));
+            throw DomainError(its_layer(domain.bodies[body]) + " has no room: " + gap +
+                              " is below layer.min_gap = " + written(least_gap(layer)));
         if (n.both > n.gap)
             throw DomainError(its_layer(domain.bodies[body]) + " is " + written(thickness(layer)) +
                               " thick, too much for " + gap + advice(layer, n.room));
@@ -126,7 +132,8 @@ void check_layers(const Domain& domain, double t) {
         const Body& b = domain.bodies[body];
         if (!b.layer) continue;
         double widest = has_inside(*b.layer) ? inner_room(at.shapes[body]) : outer_room(domain, at, body);
-        if (b.layer->side == LayerOptions::Side::both) widest = std::min(widest, outer_room(domain, at, body));
+        if (b.layer->side == LayerOptions::Side::both)
+            widest = std::min(widest, outer_room(domain, at, body));
         check_values(b, widest);
         if (has_outside(*b.layer)) check_outside(domain, at, body);
         if (has_inside(*b.layer)) check_inside(b, at.shapes[body]);

@@ -1,9 +1,9 @@
 // Room for layers: a function of where the shapes stand, not of what was before.
 //
-// Distances to planes and convex bodies change by at most one metre per metre, and so does their minimum: heights
-// that are a share of them are graded without any smoothing. Inside an ellipsoid the medial surface lies in the plane
-// across its shortest axis c; the ball that touches at x from inside has its centre there, so its radius is c^2 / p,
-// p the distance from the ellipsoid's centre to the tangent plane at x.
+// Distances to planes and convex bodies change by at most one metre per metre, and so does their minimum:
+// heights that are a share of them are graded without any smoothing. Inside an ellipsoid the medial surface
+// lies in the plane across its shortest axis c; the ball that touches at x from inside has its centre there,
+// so its radius is c^2 / p, p the distance from the ellipsoid's centre to the tangent plane at x.
 
 #include "domain/layer_room.h"
 
@@ -53,7 +53,8 @@ Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x) {
 double layer_thickness(const Snapshot& at, std::size_t body, bool inside, const Vec3& x) {
     const LayerOptions* layer = layer_at_side(at, body, inside);
     if (!layer) return 0;
-    const double room = inside ? share_inside * touching_ball(at.shapes[body], x) : nearest_gap(at, body, x).room;
+    const double room =
+        inside ? share_inside * touching_ball(at.shapes[body], x) : nearest_gap(at, body, x).room;
     return std::clamp(room, 0.0, thickness(*layer));
 }
 

@@ -44,7 +44,8 @@ struct Shape {
 [[nodiscard]] Vec3 closest_point(const Shape& shape, const Vec3& x);
 /// The least radius of curvature of the surface [m].
 [[nodiscard]] double least_curvature_radius(const Shape& shape);
-/// The distance between two surfaces [m], of spheres exact, else to 1e-9 and not above; 0 if the shapes overlap.
+/// The distance between two surfaces [m], of spheres exact, else to 1e-9 and not above; 0 if the shapes
+/// overlap.
 [[nodiscard]] double gap_between(const Shape& a, const Shape& b);
 /// The corners of the axis-parallel box that just holds the shape.
 struct Bounds { Vec3 min, max; };

@@ -4,8 +4,8 @@
 
 namespace kropla {
 
-// What inner points keep from the walls of the box and from the surfaces of the bodies (the shells of their layers),
-// per target size;
+// What inner points keep from the walls of the box and from the surfaces of the bodies (the shells of their
+// layers), per target size;
 // points within a face of the box keep the former from its edges. At bodies it is the circumradius of the
 // surface's worst triangles (0.58 if equilateral), so that diametral spheres are empty and all triangles are
 // facets of any Delaunay mesh. Of 0.55 to 0.7 at walls and 0.65 to 0.75 at bodies these leave the fewest bad

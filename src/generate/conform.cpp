@@ -1,8 +1,8 @@
 // Surfaces as facets of a Delaunay mesh (paper 1.1): found, and what they enclose identified.
 //
-// A surface triangle is a facet of the Delaunay mesh if a sphere through its corners is empty, for which its diametral
-// sphere can be cleared [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay refinement"]. The interior of a body
-// is what can be reached from the inner side of its surface without crossing a surface.
+// A surface triangle is a facet of the Delaunay mesh if a sphere through its corners is empty, for which its
+// diametral sphere can be cleared [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay refinement"]. The
+// interior of a body is what can be reached from the inner side of its surface without crossing a surface.
 
 #include "generate/conform.h"
 

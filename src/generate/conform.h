@@ -35,8 +35,8 @@ struct SurfaceFacet {
 /// Looks for all triangles of the room's surfaces in the triangulation of its points.
 [[nodiscard]] std::vector<SurfaceFacet> find_surfaces(const Triangulation& filled, const Room& room);
 
-/// The region of each tet: that which the surface around it encloses, else the surroundings. All triangles of the
-/// surfaces were found.
+/// The region of each tet: that which the surface around it encloses, else the surroundings. All triangles of
+/// the surfaces were found.
 [[nodiscard]] Array<Tet, Region> identify_regions(const Triangulation& filled, const Room& room,
                                                   const std::vector<SurfaceFacet>& found);
 

@@ -9,15 +9,16 @@
 
 namespace kropla {
 
-/// A Delaunay triangulation of a set of points: tets by the points' indices, positively oriented, and the tets across
-/// their facets (none: on the hull). A point equal to an earlier one is in no tet; `same_as` names that one.
+/// A Delaunay triangulation of a set of points: tets by the points' indices, positively oriented, and the
+/// tets across their facets (none: on the hull). A point equal to an earlier one is in no tet; `same_as`
+/// names that one.
 struct Triangulation {
     Array<Tet, std::array<Vertex, 4>> tets;
     Array<Tet, std::array<Tet, 4>> neighbour;
     Array<Vertex, Vertex> same_as;  // none for points that are vertices
 };
-/// Triangulates any set of points, degenerate ones included; ties are broken by the points' indices, so that the
-/// triangulation is unique. Fewer than four points, or all of them coplanar: no tets.
+/// Triangulates any set of points, degenerate ones included; ties are broken by the points' indices, so that
+/// the triangulation is unique. Fewer than four points, or all of them coplanar: no tets.
 [[nodiscard]] Triangulation triangulate(std::span<const Vec3> points);
 
 /// A closed triangulated surface; triangles are counter-clockwise seen from outside.
@@ -25,11 +26,12 @@ struct Surface {
     std::vector<Vec3> points;
     std::vector<std::array<int, 3>> triangles;
 };
-/// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]; vertices lie on it.
+/// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]; vertices lie on
+/// it.
 [[nodiscard]] Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed);
 
-/// The points from which the initial mesh is made: of each body's surface, of the box's corners, edges and faces,
-/// and inside; all at the target size, well apart, nowhere a gap that would hold another (maximal).
+/// The points from which the initial mesh is made: of each body's surface, of the box's corners, edges and
+/// faces, and inside; all at the target size, well apart, nowhere a gap that would hold another (maximal).
 struct PointSet {
     std::vector<Vec3> points;
     std::vector<Surface> surfaces;      // per body
@@ -37,10 +39,11 @@ struct PointSet {
 };
 [[nodiscard]] PointSet sample_points(const Snapshot& at, std::uint64_t seed);
 
-/// The initial mesh (paper 1.1), before any improvement: points, Delaunay, bodies identified as regions, faces of the
-/// box as patches. Where a triangle of a body's surface is not a facet, points that stand in its way are removed and
-/// surface points are added until it is.
-/// Throws DomainError as check_placement, or if a surface cannot be made to conform.
+/// The initial mesh (paper 1.1, 1.4), before any improvement: points, Delaunay, bodies identified as regions,
+/// faces of the box as patches, and the prism layers that bodies have: a body's outside before its inside,
+/// tets ending at walls and shells. Where a triangle of a surface is not a facet, points that stand in its
+/// way are removed and surface points are added until it is.
+/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform.
 [[nodiscard]] Mesh generate_mesh(const Domain& domain, std::uint64_t seed);
 
 }  // namespace kropla

@@ -73,7 +73,8 @@ std::optional<Stacks> stacks_on(const Surface& wall, std::size_t body, bool insi
 Surface shell_of(const Surface& wall, const Stacks& stacks) {
     Surface shell{{}, wall.triangles};
     const auto step = static_cast<std::size_t>(stacks.layer.count + 1);
-    for (std::size_t i = step - 1; i < stacks.places.size(); i += step) shell.points.push_back(stacks.places[i]);
+    for (std::size_t i = step - 1; i < stacks.places.size(); i += step)
+        shell.points.push_back(stacks.places[i]);
     return shell;
 }
 

@@ -1,11 +1,12 @@
 // The initial mesh (paper 1.1, 1.4): points, Delaunay, identification of the bodies, prism layers.
 //
-// A wall and its shell are too near to each other for one Delaunay triangulation to have both as facets. So the room
-// around the shells and the inside of each layered body are triangulated by themselves, and joined by the prisms.
+// A wall and its shell are too near to each other for one Delaunay triangulation to have both as facets. So
+// the room around the shells and the inside of each layered body are triangulated by themselves, and joined
+// by the prisms.
 //
-// Where a triangle of a surface is not a facet, points in its diametral sphere are removed; where that does not do, an
-// edge of it is split, as in [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay refinement"], with the new point
-// on the body's surface, and the columns are set up anew.
+// Where a triangle of a surface is not a facet, points in its diametral sphere are removed; where that does
+// not do, an edge of it is split, as in [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay
+// refinement"], with the new point on the body's surface, and the columns are set up anew.
 
 #include "base/error.h"
 #include "domain/layer_room.h"
@@ -25,8 +26,8 @@ namespace kropla {
 
 namespace {
 
-/// The points of a mesh to be: the bodies' surfaces, which may be refined, and the others of each room: of the box,
-/// then of the inside of each body, in use where it has a layer.
+/// The points of a mesh to be: the bodies' surfaces, which may be refined, and the others of each room: of
+/// the box, then of the inside of each body, in use where it has a layer.
 struct Draft {
     std::vector<Surface> walls;
     std::vector<std::vector<Vec3>> others;
@@ -91,7 +92,8 @@ struct FilledRoom {
 };
 
 /// Splits the longest edges of `triangles` of the body's wall, and frees the space around the new points.
-void refine_wall(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles, const Snapshot& at) {
+void refine_wall(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles,
+                 const Snapshot& at) {
     Skin skin = make_skin(draft.walls[body], at.shapes[body].centre);
     const Skin before = skin;
     for (std::size_t i : triangles) {
@@ -162,13 +164,15 @@ struct Assembly {
     std::vector<BoundaryFacet> boundary;
 };
 
-/// Adds the vertices above the wall of one layer, and the facets of its two patches. Returns the shell's vertices.
+/// Adds the vertices above the wall of one layer, and the facets of its two patches. Returns the shell's
+/// vertices.
 std::vector<Vertex> append_layer(Assembly& a, const std::vector<Vertex>& wall, Stacks stacks) {
     const Layer name(a.layers.size());
     const auto step = static_cast<std::size_t>(stacks.layer.count + 1);
     std::vector<Vertex> shell;
     for (std::size_t i = 0; i < stacks.places.size(); ++i) {
-        stacks.layer.columns.push_back(i % step == 0 ? wall[i / step] : a.position.push_back(stacks.places[i]));
+        stacks.layer.columns.push_back(i % step == 0 ? wall[i / step]
+                                                     : a.position.push_back(stacks.places[i]));
         if (i % step == step - 1) shell.push_back(stacks.layer.columns.back());
     }
     for (const auto& triangle : stacks.layer.triangles) {
@@ -186,14 +190,16 @@ void append_walls_and_layers(Assembly& a, const std::vector<Surface>& walls, con
     for (std::size_t body = 0; body < walls.size(); ++body) {
         std::vector<Vertex> wall;
         for (const Vec3& x : walls[body].points) wall.push_back(a.position.push_back(x));
-        auto outside = stacks_on(walls[body], body, false, at), inside = stacks_on(walls[body], body, true, at);
+        auto outside = stacks_on(walls[body], body, false, at),
+             inside = stacks_on(walls[body], body, true, at);
         a.outer_boundary.push_back(outside ? append_layer(a, wall, std::move(*outside)) : wall);
         a.inner_boundary.push_back(inside ? append_layer(a, wall, std::move(*inside)) : wall);
     }
 }
 
 /// The hull of the room around the bodies: the faces of the box.
-void append_box_facets(Assembly& a, const Triangulation& filled, const std::vector<Vertex>& names, const Box& box) {
+void append_box_facets(Assembly& a, const Triangulation& filled, const std::vector<Vertex>& names,
+                       const Box& box) {
     for (Tet t : filled.tets.indices())
         for (std::size_t i = 0; i < 4; ++i) {
             if (filled.neighbour[t][i].exists()) continue;
@@ -202,8 +208,8 @@ void append_box_facets(Assembly& a, const Triangulation& filled, const std::vect
                 const Vertex local = filled.tets[t][static_cast<std::size_t>(tet_facets[i][k])];
                 corners[k] = names[static_cast<std::size_t>(local.value)];
             }
-            a.boundary.push_back(
-                {corners, shared_face(box, {a.position[corners[0]], a.position[corners[1]], a.position[corners[2]]})});
+            a.boundary.push_back({corners, shared_face(box, {a.position[corners[0]], a.position[corners[1]],
+                                                             a.position[corners[2]]})});
         }
 }
 
@@ -217,7 +223,8 @@ void append_room(Assembly& a, const FilledRoom& filled, bool whole_box, const Sn
     for (const Vec3& x : filled.room.others) names.push_back(a.position.push_back(x));
     for (Tet t : filled.filled.tets.indices()) {
         const Region region = filled.region[t];
-        const bool in_layered = region != surroundings && is_layered(at, static_cast<std::size_t>(region.value) - 1);
+        const bool in_layered =
+            region != surroundings && is_layered(at, static_cast<std::size_t>(region.value) - 1);
         if (in_layered == whole_box || (!whole_box && region == surroundings)) continue;
         auto tet = filled.filled.tets[t];
         for (Vertex& v : tet) v = names[static_cast<std::size_t>(v.value)];

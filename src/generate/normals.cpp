@@ -1,10 +1,11 @@
 // Normals of triangulated surfaces by quadric height functions (paper 1.4).
 //
-// Over the tangent plane, by the mean of the triangles' normals weighted by their angles [Thurmer, Wuthrich 1998], the
-// height function a s^2 + b s t + c t^2 + d s + e t is fitted to the neighbours by least squares; its gradient (d, e)
-// tilts the normal. Fewer than five neighbours: their neighbours too. Where the normal sees a triangle badly, it is
-// drawn to that triangle's normal, in the end to the direction that sees the worst triangle best ("most normal" in
-// [Aubry, Lohner 2008, "On the most normal normal"], found there by a search).
+// Over the tangent plane, by the mean of the triangles' normals weighted by their angles [Thurmer, Wuthrich
+// 1998], the height function a s^2 + b s t + c t^2 + d s + e t is fitted to the neighbours by least squares;
+// its gradient (d, e) tilts the normal. Fewer than five neighbours: their neighbours too. Where the normal
+// sees a triangle badly, it is drawn to that triangle's normal, in the end to the direction that sees the
+// worst triangle best ("most normal" in [Aubry, Lohner 2008, "On the most normal normal"], found there by a
+// search).
 
 #include "generate/normals.h"
 
@@ -28,7 +29,8 @@ Rings rings(std::size_t points, std::span<const std::array<int, 3>> triangles) {
     for (std::size_t t = 0; t < triangles.size(); ++t)
         for (std::size_t i = 0; i < 3; ++i) {
             const int v = triangles[t][i];
-            found.points[at(v)].push_back(triangles[t][(i + 1) % 3]);  // each neighbour once: the surface is closed
+            // the next corner only: so each neighbour is there once, as the surface is closed
+            found.points[at(v)].push_back(triangles[t][(i + 1) % 3]);
             found.triangles[at(v)].push_back(static_cast<int>(t));
         }
     return found;
@@ -64,13 +66,14 @@ std::array<double, 5> solve(std::array<Row, 5> m) {
     return x;
 }
 
-/// The normal at `p` of the quadric through it that is fitted to `others`, a height function over the plane across
-/// `up`.
+/// The normal at `p` of the quadric through it that is fitted to `others`, a height function over the plane
+/// across `up`.
 Vec3 quadric_normal(const Vec3& p, const Vec3& up, std::span<const Vec3> others) {
     constexpr double damping = 1e-12;  // of the system's size: picks the flattest quadric where many fit
     double scale = 0;
     for (const Vec3& q : others) scale = std::max(scale, distance(p, q));
-    const Vec3 u = normalised(cross(up, std::abs(up.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})), v = cross(up, u);
+    const Vec3 u = normalised(cross(up, std::abs(up.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})),
+               v = cross(up, u);
     std::array<Row, 5> m{};
     for (std::size_t i = 0; i < 5; ++i) m[i][i] = damping;
     for (const Vec3& q : others) {
@@ -84,7 +87,8 @@ Vec3 quadric_normal(const Vec3& p, const Vec3& up, std::span<const Vec3> others)
     return normalised(up - x[3] * u - x[4] * v);
 }
 
-/// Turns `normal` until its angle to each of `sides` has a cosine of `enough`, or as near to that as rounds allow.
+/// Turns `normal` until its angle to each of `sides` has a cosine of `enough`, or as near to that as rounds
+/// allow.
 Vec3 made_to_see(Vec3 normal, std::span<const Vec3> sides) {
     constexpr double enough = 0.5;
     constexpr int rounds = 200;
@@ -94,14 +98,15 @@ Vec3 made_to_see(Vec3 normal, std::span<const Vec3> sides) {
     for (int i = 0; i < rounds; ++i) {
         const Vec3 side = worst();
         if (dot(side, normal) >= enough) break;
-        normal = normalised(normal + side / (i + 1.0));  // ever smaller steps: to the best where none is enough
+        normal = normalised(normal + side / (i + 1.0));  // ever smaller steps: to the best if none is enough
     }
     return normal;
 }
 
 }  // namespace
 
-std::vector<Vec3> surface_normals(std::span<const Vec3> points, std::span<const std::array<int, 3>> triangles) {
+std::vector<Vec3> surface_normals(std::span<const Vec3> points,
+                                  std::span<const std::array<int, 3>> triangles) {
     const Rings around = rings(points.size(), triangles);
     std::vector<Vec3> normals, sides, others;
     for (int v = 0; v < static_cast<int>(points.size()); ++v) {
@@ -111,7 +116,8 @@ std::vector<Vec3> surface_normals(std::span<const Vec3> points, std::span<const 
         for (int t : around.triangles[at(v)]) {
             const auto& corners = triangles[at(t)];
             const auto here = static_cast<std::size_t>(std::ranges::find(corners, v) - corners.begin());
-            const Vec3 a = points[at(corners[(here + 1) % 3])] - p, b = points[at(corners[(here + 2) % 3])] - p;
+            const Vec3 a = points[at(corners[(here + 1) % 3])] - p,
+                       b = points[at(corners[(here + 2) % 3])] - p;
             sides.push_back(normalised(cross(a, b)));
             mean += std::atan2(norm(cross(a, b)), dot(a, b)) * sides.back();
         }

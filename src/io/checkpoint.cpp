@@ -235,32 +235,30 @@ std::vector<PrismLayer> read_layers(hid_t parent) {
     return layers;
 }
 
+/// Calls visit(name, array) for each array of the mesh: what is written is what is read.
+template <class AnyMesh, class Visit>
+void for_each_array(AnyMesh& mesh, const Visit& visit) {
+    visit("position", mesh.position);
+    visit("tet_at", mesh.tet_at);
+    visit("layer_at", mesh.layer_at);
+    visit("tets", mesh.tets);
+    visit("neighbour", mesh.neighbour);
+    visit("patch", mesh.patch);
+    visit("region", mesh.region);
+    visit("free_tets", mesh.free_tets);
+    visit("free_vertices", mesh.free_vertices);
+}
+
 void write_mesh(hid_t file, const Mesh& mesh) {
     const Group group = new_group(file, "mesh");
-    write_array(group, "position", mesh.position);
-    write_array(group, "tet_at", mesh.tet_at);
-    write_array(group, "layer_at", mesh.layer_at);
-    write_array(group, "tets", mesh.tets);
-    write_array(group, "neighbour", mesh.neighbour);
-    write_array(group, "patch", mesh.patch);
-    write_array(group, "region", mesh.region);
-    write_array(group, "free_tets", mesh.free_tets);
-    write_array(group, "free_vertices", mesh.free_vertices);
+    for_each_array(mesh, [&](const char* name, const auto& items) { write_array(group, name, items); });
     write_layers(group, mesh.layers);
 }
 
 Mesh read_mesh(hid_t file) {
     const Group group(H5Gopen2(file, "mesh", H5P_DEFAULT), "find the group mesh");
     Mesh mesh;
-    read_array(group, "position", mesh.position);
-    read_array(group, "tet_at", mesh.tet_at);
-    read_array(group, "layer_at", mesh.layer_at);
-    read_array(group, "tets", mesh.tets);
-    read_array(group, "neighbour", mesh.neighbour);
-    read_array(group, "patch", mesh.patch);
-    read_array(group, "region", mesh.region);
-    read_array(group, "free_tets", mesh.free_tets);
-    read_array(group, "free_vertices", mesh.free_vertices);
+    for_each_array(mesh, [&](const char* name, auto& items) { read_array(group, name, items); });
     mesh.layers = read_layers(group);
     return mesh;
 }

@@ -9,37 +9,9 @@
 #include <array>
 #include <charconv>
 #include <optional>
-#include <utility>
 
 namespace kropla {
 namespace {
-
-constexpr std::array<std::pair<char, std::string_view>, 4> escapes = {
-    {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}}};
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        std::string_view written(&c, 1);
-        for (const auto& [special, name] : escapes)
-            if (c == special) written = name;
-        result += written;
-    }
-    return result;
-}
-
-std::string unescaped(std::string_view text) {
-    std::string result;
-    while (!text.empty()) {
-        std::size_t used = 1;
-        char c = text[0];
-        for (const auto& [special, name] : escapes)
-            if (text.starts_with(name)) c = special, used = name.size();
-        result += c;
-        text.remove_prefix(used);
-    }
-    return result;
-}
 
 /// The shortest text that reads back as the same number.
 std::string shortest(double value) {

@@ -1,11 +1,15 @@
 #include "io/xml.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace kropla {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
+constexpr std::array<std::pair<char, std::string_view>, 4> escapes = {
+    {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}}};
 
 }  // namespace
 
@@ -23,6 +27,30 @@ std::optional<std::string_view> xml_attribute(std::string_view element, std::str
         return rest.substr(1, end - 1);
     }
     return {};
+}
+
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        std::string_view written(&c, 1);
+        for (const auto& [special, name] : escapes)
+            if (c == special) written = name;
+        result += written;
+    }
+    return result;
+}
+
+std::string unescaped(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        std::size_t used = 1;
+        char c = text[0];
+        for (const auto& [special, name] : escapes)
+            if (text.starts_with(name)) c = special, used = name.size();
+        result += c;
+        text.remove_prefix(used);
+    }
+    return result;
 }
 
 }  // namespace kropla

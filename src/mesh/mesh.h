@@ -20,9 +20,9 @@ using Layer = Index<struct LayerTag>;    ///< a prism layer: its place in Mesh::
 inline constexpr int box_faces = 6;
 inline constexpr Region surroundings{0};
 
-/// Prisms in stacks on one side of a body's surface: a triangulated wall and, for each of its vertices, a column of
-/// `count` + 1 vertices from the wall to the shell. Prism (triangle, k) is implied: cells.h draws it. The tets see a
-/// layer as two patches of their boundary, its wall and its shell (prisms.h).
+/// Prisms in stacks on one side of a body's surface: a triangulated wall and, for each of its vertices, a
+/// column of `count` + 1 vertices from the wall to the shell. Prism (triangle, k) is implied: cells.h draws
+/// it. The tets see a layer as two patches of their boundary, its wall and its shell (prisms.h).
 struct PrismLayer {
     Region region;  // of the prisms: the surroundings, or the body for a layer inside it
     Region body;    // on whose surface it stands
@@ -33,15 +33,16 @@ struct PrismLayer {
     bool operator==(const PrismLayer&) const = default;
 };
 
-/// A mesh of tetrahedra and of layers of prisms, as a value: copy it to keep it. Its invariant is `verify`; `replace_cells` is the only
-/// function that changes its connectivity. Interfaces are where regions differ; nothing else records them.
+/// A mesh of tetrahedra and of layers of prisms, as a value: copy it to keep it. Its invariant is `verify`;
+/// `replace_cells` is the only function that changes its connectivity. Interfaces are where regions differ;
+/// nothing else records them.
 ///
 /// Removed cells and vertices leave free slots, which later ones take, so that nothing else is renumbered:
 /// pass over them with `alive`.
 struct Mesh {
     Array<Vertex, Vec3> position;              // [m]
     Array<Vertex, Tet> tet_at;                 // one tet of its ball, where a query starts, if it has one
-    Array<Vertex, Layer> layer_at;             // the layer (the first, if two) that has it in a column, if one has
+    Array<Vertex, Layer> layer_at;  // the layer (the first, if two) that has it in a column, if one has
     Array<Tet, std::array<Vertex, 4>> tets;    // det(v1-v0, v2-v0, v3-v0) > 0; a free slot has no vertices
     Array<Tet, std::array<Tet, 4>> neighbour;  // across the facet opposite corner i, or none
     Array<Tet, std::array<Patch, 4>> patch;    // boundary patch of that facet, where there is no neighbour

@@ -49,8 +49,9 @@ std::array<Vec3, 6> prism_corners(const Mesh& mesh, const Prism& prism) {
 }
 
 double prism_volume(const std::array<Vec3, 6>& x) {
-    // The mean over the six ways to cut it into three tets is exact: each bilinear quad lies half-way between its two
-    // pairs of triangles. The flux of x/3 through two triangles and the mean of both cuts of each quad is the same.
+    // The mean over the six ways to cut it into three tets is exact: each bilinear quad lies half-way between
+    // its two pairs of triangles. The flux of x/3 through two triangles and the mean of both cuts of each
+    // quad is the same.
     const auto through = [&](std::size_t a, std::size_t b, std::size_t c) {
         return determinant(x[a] - x[0], x[b] - x[0], x[c] - x[0]) / 6;
     };

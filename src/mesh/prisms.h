@@ -17,8 +17,8 @@ struct Prism {
     return mesh.layers[static_cast<std::size_t>(l.value)];
 }
 
-/// The patches of the tets' boundary that a layer takes: at its wall, on the far side of the body's surface, and at
-/// its shell.
+/// The patches of the tets' boundary that a layer takes: at its wall, on the far side of the body's surface,
+/// and at its shell.
 [[nodiscard]] inline Patch wall_patch(Layer l) { return Patch(box_faces + 2 * l.value); }
 [[nodiscard]] inline Patch shell_patch(Layer l) { return Patch(box_faces + 2 * l.value + 1); }
 
@@ -36,7 +36,8 @@ inline constexpr int most_layers = 13;  // patches go up to 31
 }
 [[nodiscard]] int count_prisms(const Mesh& mesh);
 
-/// Gives the mesh one more layer: its column vertices, places of `position` already, are no free slots from now on.
+/// Gives the mesh one more layer: its column vertices, places of `position` already, are no free slots from
+/// now on.
 void add_layer(Mesh& mesh, PrismLayer layer);
 
 /// All prisms, layer by layer, triangle by triangle, from the wall outwards.
@@ -49,8 +50,9 @@ void add_layer(Mesh& mesh, PrismLayer layer);
 /// The volume [m^3] of a prism whose quads are bilinear; exact.
 [[nodiscard]] double prism_volume(const std::array<Vec3, 6>& corners);
 
-/// The least scaled Jacobian of the six corners: the determinant of the three edges there by their lengths, against
-/// that of a corner of a right prism on an equilateral triangle (sin 60 degrees): 1 is perfect, below 0 turned over.
+/// The least scaled Jacobian of the six corners: the determinant of the three edges there by their lengths,
+/// against that of a corner of a right prism on an equilateral triangle (sin 60 degrees): 1 is perfect, below
+/// 0 turned over.
 [[nodiscard]] double scaled_corner_jacobian(const std::array<Vec3, 6>& corners);
 
 /// What is reported of one layer. Heights are lengths of column edges.

@@ -55,11 +55,11 @@ int mirror_corner(const Mesh& mesh, Facet f) {
     return across[0] == f.tet ? 0 : across[1] == f.tet ? 1 : across[2] == f.tet ? 2 : 3;
 }
 
-std::vector<Tet> all_tets(const Mesh& mesh) {
+std::vector<Tet> all_tets(const Mesh& mesh, Region only) {
     std::vector<Tet> tets;
     tets.reserve(mesh.tets.size());
     for (Tet t : mesh.tets.indices())
-        if (alive(mesh, t)) tets.push_back(t);
+        if (alive(mesh, t) && (!only.exists() || mesh.region[t] == only)) tets.push_back(t);
     return tets;
 }
 

@@ -28,8 +28,8 @@ struct Facet {
 /// The corner of `neighbour` that faces the facet `f`, across which it lies.
 [[nodiscard]] int mirror_corner(const Mesh& mesh, Facet f);
 
-/// All tets of the mesh, without free slots.
-[[nodiscard]] std::vector<Tet> all_tets(const Mesh& mesh);
+/// All tets of the mesh, without free slots, in order; or those of one region.
+[[nodiscard]] std::vector<Tet> all_tets(const Mesh& mesh, Region only = {});
 
 /// The tets at `v`, each once.
 [[nodiscard]] std::vector<Tet> ball(const Mesh& mesh, Vertex v);

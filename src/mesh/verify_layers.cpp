@@ -29,8 +29,8 @@ std::string fault_of_stacks(const Mesh& mesh, Layer l) {
     if (layer.count < 1) return named(l) + " has no prisms in a column";
     if (!layer.region.exists() || !layer.body.exists()) return named(l) + " is of no region or body";
     if (layer.columns.empty() || layer.columns.size() % at(layer.count + 1) != 0)
-        return named(l) + " has " + std::to_string(layer.columns.size()) + " column vertices, no multiple of " +
-               std::to_string(layer.count + 1);
+        return named(l) + " has " + std::to_string(layer.columns.size()) +
+               " column vertices, no multiple of " + std::to_string(layer.count + 1);
     std::vector<Vertex> seen = layer.columns;
     std::ranges::sort(seen);
     if (seen.front().value < 0 || at(seen.back().value) >= mesh.position.size())
@@ -42,7 +42,8 @@ std::string fault_of_stacks(const Mesh& mesh, Layer l) {
     return {};
 }
 
-/// The wall is closed: the edges of its triangles come in pairs, one in either direction, and each column is used.
+/// The wall is closed: the edges of its triangles come in pairs, one in either direction, and each column is
+/// used.
 std::string fault_of_wall(const Mesh& mesh, Layer l) {
     const PrismLayer& layer = layer_of(mesh, l);
     std::vector<char> used(at(count_columns(layer)), 0);
@@ -61,8 +62,8 @@ std::string fault_of_wall(const Mesh& mesh, Layer l) {
     for (const auto& [a, b] : edges)
         if (twice != edges.end() || !std::ranges::binary_search(edges, std::pair(b, a))) {
             const auto [c, d] = twice != edges.end() ? *twice : std::pair(a, b);
-            return "the wall of " + named(l) + " is not closed at the edge of columns " + std::to_string(c) + "-" +
-                   std::to_string(d);
+            return "the wall of " + named(l) + " is not closed at the edge of columns " + std::to_string(c) +
+                   "-" + std::to_string(d);
         }
     return {};
 }
@@ -100,7 +101,8 @@ PatchFacets facets_of_patch(const Mesh& mesh, Patch patch) {
 std::vector<Triangle> surface_triangles(const PrismLayer& layer, int k) {
     std::vector<Triangle> triangles;
     for (const auto& [a, b, c] : layer.triangles) {
-        const Vertex p = column_vertex(layer, a, k), q = column_vertex(layer, b, k), r = column_vertex(layer, c, k);
+        const Vertex p = column_vertex(layer, a, k), q = column_vertex(layer, b, k),
+                     r = column_vertex(layer, c, k);
         triangles.push_back(turned(k == 0 ? Triangle{p, q, r} : Triangle{p, r, q}));
     }
     std::ranges::sort(triangles);
@@ -115,10 +117,12 @@ bool wall_is_shared(const Mesh& mesh, Layer l) {
     });
 }
 
-/// The tets end where the layer begins: their facets of its two patches are its wall's and its shell's triangles.
+/// The tets end where the layer begins: their facets of its two patches are its wall's and its shell's
+/// triangles.
 std::string fault_of_patches(const Mesh& mesh, Layer l) {
     const PrismLayer& layer = layer_of(mesh, l);
-    const PatchFacets wall = facets_of_patch(mesh, wall_patch(l)), shell = facets_of_patch(mesh, shell_patch(l));
+    const PatchFacets wall = facets_of_patch(mesh, wall_patch(l)),
+                      shell = facets_of_patch(mesh, shell_patch(l));
     if (shell.facets != surface_triangles(layer, layer.count))
         return "the shell of " + named(l) + " is not the tets' boundary of patch " +
                std::to_string(shell_patch(l).value);
@@ -140,7 +144,8 @@ std::string fault_of_shared_walls(const Mesh& mesh) {
             for (Triangle& t : other) t = turned({t[0], t[2], t[1]});
             std::ranges::sort(other);
             if (surface_triangles(mesh.layers[i], 0) != other)
-                return named(Layer(i)) + " and " + named(Layer(j)) + " stand on one body, but not on one wall";
+                return named(Layer(i)) + " and " + named(Layer(j)) +
+                       " stand on one body, but not on one wall";
         }
     return {};
 }
@@ -151,15 +156,17 @@ std::string fault_of_layer_at(const Mesh& mesh) {
         for (Vertex v : mesh.layers[l].columns) right[v] = Layer(l);
     for (Vertex v : mesh.position.indices())
         if (mesh.layer_at[v] != right[v])
-            return "vertex " + std::to_string(v.value) + " has layer " + std::to_string(mesh.layer_at[v].value) +
-                   " recorded, but is of " + std::to_string(right[v].value);
+            return "vertex " + std::to_string(v.value) + " has layer " +
+                   std::to_string(mesh.layer_at[v].value) + " recorded, but is of " +
+                   std::to_string(right[v].value);
     return {};
 }
 
 }  // namespace
 
 std::string fault_of_layers(const Mesh& mesh) {
-    if (mesh.layers.size() > at(most_layers)) return "there are more than " + std::to_string(most_layers) + " layers";
+    if (mesh.layers.size() > at(most_layers))
+        return "there are more than " + std::to_string(most_layers) + " layers";
     for (std::size_t l = 0; l < mesh.layers.size(); ++l)
         for (const auto check : {fault_of_stacks, fault_of_wall})
             if (auto fault = check(mesh, Layer(l)); !fault.empty()) return fault;

@@ -1,5 +1,6 @@
 #include "report/chart.h"
 
+#include "io/xml.h"
 #include "report/svg.h"
 
 #include <algorithm>
@@ -73,7 +74,8 @@ Axes axes_of(const Chart& chart) {
     Range y = range_of_values(chart);
     if (!(y.least <= y.most)) y = {0, 1};  // no value is finite
     const bool flat = y.most - y.least <= 1e-12 * std::max(std::abs(y.most), std::abs(y.least));
-    const double margin = flat ? std::max(0.05 * std::abs(y.most), 1e-12) : 0.06 * (y.most - y.least);
+    const double flat_margin = y.most == 0 ? 1 : 0.05 * std::abs(y.most);
+    const double margin = flat ? flat_margin : 0.06 * (y.most - y.least);
     const double foot = chart.marks == Chart::Marks::columns && y.least == 0 ? 0 : margin;
     // Half a row of room at both ends, for the columns.
     const double half = chart.x.size() > 1 ? (chart.x.back() - chart.x.front()) /

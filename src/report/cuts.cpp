@@ -2,6 +2,7 @@
 
 #include "io/vtk.h"
 #include "mesh/prisms.h"
+#include "io/xml.h"
 #include "report/picture.h"
 #include "report/svg.h"
 

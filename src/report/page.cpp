@@ -1,6 +1,7 @@
 #include "report/page.h"
 
 #include "io/file.h"
+#include "io/xml.h"
 #include "report/chart.h"
 #include "report/cuts.h"
 #include "report/run_files.h"

@@ -1,5 +1,6 @@
 #include "report/picture.h"
 
+#include "io/xml.h"
 #include "report/svg.h"
 
 #include <algorithm>

@@ -17,20 +17,6 @@ std::string to_text(double value, std::chars_format format, int precision) {
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-            case '&': result += "&amp;"; break;
-            case '<': result += "&lt;"; break;
-            case '>': result += "&gt;"; break;
-            case '"': result += "&quot;"; break;
-            default: result += c;
-        }
-    }
-    return result;
-}
-
 std::string pixels(double value) {
     const long tenths = std::lround(value * 10);
     std::string text = (tenths < 0 ? "-" : "") + std::to_string(std::labs(tenths) / 10);

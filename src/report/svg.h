@@ -4,13 +4,9 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace kropla {
-
-/// Text as it stands in HTML and SVG, also between quotes.
-[[nodiscard]] std::string escaped(std::string_view text);
 
 /// A coordinate of a drawing, to a tenth of a pixel: "12.3", "-4", "0".
 [[nodiscard]] std::string pixels(double value);

@@ -2,6 +2,7 @@
 #include "simulate/heat.h"
 
 #include "base/error.h"
+#include "mesh/topology.h"
 #include "simulate/elements.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace {
 /// A cell of n corners during the step.
 template <std::size_t n>
 struct Cell {
-    Corners<n> x0, x1;                // where the corners came from, for one who goes with a body, and are [m]
+    Corners<n> x0, x1;                // where the corners came from, seen from their body, and are [m]
     CellPoints<n> before, now;        // at the step's begin and end
     std::array<double, n> old;        // [K]
     std::array<double, n> source;     // [W/m^3]

@@ -25,7 +25,8 @@ Domain with_layers(Domain domain, const LayerOptions& layer) {
 
 constexpr LayerOptions thin{3, 0.04, 1.3, Side::outside, {}};  // 0.16 thick, on triangles of 0.4
 
-/// The cube roots of the volumes of tets on a shell, by those of the prisms below: the largest jump either way.
+/// The cube roots of the volumes of tets on a shell, by those of the prisms below: the largest jump either
+/// way.
 double largest_jump(const Mesh& mesh, Layer l) {
     const PrismLayer& layer = layer_of(mesh, l);
     std::map<std::array<Vertex, 3>, double> below;
@@ -39,7 +40,8 @@ double largest_jump(const Mesh& mesh, Layer l) {
     double jump = 0;
     for (Tet t : mesh.tets.indices())
         for (int i = 0; i < 4; ++i) {
-            if (mesh.patch[t][static_cast<std::size_t>(i)] != shell_patch(l) || aspect_ratio(mesh, t) > 10) continue;
+            if (mesh.patch[t][static_cast<std::size_t>(i)] != shell_patch(l) || aspect_ratio(mesh, t) > 10)
+                continue;
             auto key = facet_vertices(mesh, {t, i});
             std::ranges::sort(key);
             const double ratio = std::cbrt(volume(mesh, t) / below.at(key));
@@ -53,7 +55,8 @@ void expect_layered_mesh(const Domain& domain, const Mesh& mesh, bool roomy) {
     EXPECT_EQ(verify(mesh), "");
     const Vec3 width = domain.box.max - domain.box.min;
     double total = 0;
-    for (std::size_t body = 0; body <= domain.bodies.size(); ++body) total += region_volume(mesh, Region(body));
+    for (std::size_t body = 0; body <= domain.bodies.size(); ++body)
+        total += region_volume(mesh, Region(body));
     EXPECT_NEAR(total / (width.x * width.y * width.z), 1, 1e-12);
     for (std::size_t l = 0; l < mesh.layers.size(); ++l) {
         const PrismLayer& layer = mesh.layers[l];
@@ -68,7 +71,7 @@ void expect_layered_mesh(const Domain& domain, const Mesh& mesh, bool roomy) {
         EXPECT_GE(summary.min_jacobian, roomy ? 0.3 : 0.1);
         EXPECT_NEAR(summary.min_growth / asked.growth, 1, 1e-9);
         EXPECT_NEAR(summary.max_growth / asked.growth, 1, 1e-9);
-        EXPECT_NEAR(summary.max_first_height / asked.first_height, 1, 1e-9);
+        EXPECT_LT(summary.max_first_height / asked.first_height, 1 + 1e-9);
         if (roomy) EXPECT_NEAR(summary.min_first_height / asked.first_height, 1, 1e-9);
         else EXPECT_LT(summary.min_first_height, 0.99 * asked.first_height);
     }
@@ -91,7 +94,8 @@ std::string error_of(const Domain& domain) {
 
 void expect_error(const Domain& domain, std::initializer_list<const char*> parts) {
     const std::string error = error_of(domain);
-    for (const char* part : parts) EXPECT_NE(error.find(part), std::string::npos) << part << " not in: " << error;
+    for (const char* part : parts)
+        EXPECT_NE(error.find(part), std::string::npos) << part << " not in: " << error;
 }
 
 }  // namespace
@@ -120,10 +124,20 @@ TEST(LayeredMesh, OfAnEllipsoid) {
     }
 }
 
+TEST(LayeredMesh, InsideIsThinnedAtSharpEnds) {
+    Domain domain = small_domain({turned_ellipsoid({0, 0, 4}, {1.6, 0.8, 0.8})});  // the tips' radius: 0.4
+    domain.size.surface = 0.3;
+    domain = with_layers(domain, {4, 0.06, 1.3, Side::inside, {}});  // 0.37 thick
+    const Mesh mesh = generate_mesh(domain, 2);
+    expect_layered_mesh(domain, mesh, false);
+    EXPECT_NEAR(summarise_layer(mesh, Layer(0)).min_thickness, 0.2, 0.02);
+}
+
 TEST(LayeredMesh, OfSeveralBodiesSomeWithout) {
-    Domain domain = with_layers(small_domain({ball({-1.2, -1.2, 2}, 1), turned_ellipsoid({0.5, 0.5, 5}, {1, 1.5, 1.2}),
-                                              ball({1.8, -1.6, 1.4}, 0.6)}),
-                                {3, 0.02, 1.3, Side::outside, {}});
+    Domain domain =
+        with_layers(small_domain({ball({-1.2, -1.2, 2}, 1), turned_ellipsoid({0.5, 0.5, 5}, {1, 1.5, 1.2}),
+                                  ball({1.8, -1.6, 1.4}, 0.6)}),
+                    {3, 0.02, 1.3, Side::outside, {}});
     domain.bodies[0].layer = std::nullopt;
     domain.bodies[2].layer->side = Side::both;
     const Mesh mesh = generate_mesh(domain, 1);
@@ -154,12 +168,14 @@ TEST(LayeredMesh, RefusesLayersTooThickAndSaysWhatFits) {
     LayerOptions thick{3, 0.1, 1.25, Side::outside, {}};
     Domain domain = near;
     domain.bodies[0].layer = thick;
-    expect_error(domain, {"body \"0\": its layer is 0.381 m thick, too much for the gap of 0.3 m to the wall z min",
-                          "the largest layer that fits is 0.1 m thick, by layer.first_height of at most 0.026 m"});
+    expect_error(domain,
+                 {"body \"0\": its layer is 0.381 m thick, too much for the gap of 0.3 m to the wall z min",
+                  "the largest layer that fits is 0.1 m thick, by layer.first_height of at most 0.026 m"});
     domain.bodies[0].layer->first_height = 0.05;  // 0.19: thinned
     EXPECT_EQ(error_of(domain), "");
     domain.bodies[1].layer = LayerOptions{3, 0.15, 1.25, Side::outside, {}};
-    expect_error(domain, {"too much for the gap of 0.7 m to body \"1\"", "thick, by layer.first_height of at most 0.04"});
+    expect_error(domain, {"too much for the gap of 0.7 m to body \"1\"",
+                          "thick, by layer.first_height of at most 0.04"});
 }
 
 TEST(LayeredMesh, TheLargestLayerThatFitsDoes) {
@@ -184,7 +200,8 @@ TEST(LayeredMesh, RefusesGapsBelowTheLeast) {
 
 TEST(LayeredMesh, RefusesValuesOutOfRange) {
     const Domain one = small_domain({ball({0, 0, 4}, 1)});
-    expect_error(with_layers(one, {3, -0.1, 1.25, Side::outside, {}}), {"positive layer.first_height, got -0.1", "fits"});
+    expect_error(with_layers(one, {3, -0.1, 1.25, Side::outside, {}}),
+                 {"positive layer.first_height, got -0.1", "fits"});
     expect_error(with_layers(one, {3, 0.1, 0, Side::outside, {}}), {"positive layer.growth, got 0"});
     expect_error(with_layers(one, {0, 0.1, 1, Side::outside, {}}), {"layer.count is below 1"});
     expect_error(with_layers(one, {400, 0.001, 1e3, Side::outside, {}}),
@@ -196,7 +213,7 @@ TEST(LayeredMesh, RefusesMoreLayersThanThereArePatchesFor) {
     domain.box = {{0, 0, 0}, {14, 4, 4}};
     domain.size = {0.5, 0.3, 1};
     for (int i = 0; i < 7; ++i)
-        domain.bodies.push_back({std::to_string(i), ball({1.0 + 2 * i, 2, 2}, 0.5), [](double) { return Pose{}; },
-                                 LayerOptions{1, 0.02, 1, Side::both, {}}});
+        domain.bodies.push_back({std::to_string(i), ball({1.0 + 2 * i, 2, 2}, 0.5),
+                                 [](double) { return Pose{}; }, LayerOptions{1, 0.02, 1, Side::both, {}}});
     expect_error(domain, {"there are 14 layers, a mesh has 13 at most"});
 }

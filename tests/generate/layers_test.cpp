@@ -110,7 +110,9 @@ TEST(Columns, GiveWayToABodyWithoutALayerAsToAWall) {
 
 TEST(Columns, DependOnThePlaceNotOnTheWayThere) {
     Domain domain = layered_ball({0, 0, 4});
-    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -2.7 * std::sin(t)}, rotation_about({1, 1, 0}, t)}; };
+    domain.bodies[0].motion = [](double t) {
+        return Pose{{0, 0, -2.7 * std::sin(t)}, rotation_about({1, 1, 0}, t)};
+    };
     const Snapshot start = snapshot(domain, 0);
     const Surface wall = triangulate_surface(start.shapes[0], 0.3, 1);
     const PrismLayer layer = stacks_on(wall, 0, false, start)->layer;
@@ -132,7 +134,8 @@ TEST(Columns, DependOnThePlaceNotOnTheWayThere) {
 
 TEST(Columns, InsideGiveWayToCurvature) {
     Domain domain = small_domain({turned_ellipsoid({0, 0, 4}, {2, 1, 1})});
-    domain.bodies[0].layer = LayerOptions{3, 0.1, 1.25, Side::inside, {}};  // 0.38; the tips have a radius of 0.5
+    domain.bodies[0].layer =
+        LayerOptions{3, 0.1, 1.25, Side::inside, {}};  // 0.38; the tips have a radius of 0.5
     const Snapshot at = snapshot(domain, 0);
     const Surface wall = triangulate_surface(at.shapes[0], 0.2, 1);
     const auto stacks = stacks_on(wall, 0, true, at);
@@ -141,7 +144,8 @@ TEST(Columns, InsideGiveWayToCurvature) {
         const double thick = total(heights(*stacks, c));
         least = std::min(least, thick);
         largest = std::max(largest, thick);
-        EXPECT_NEAR(signed_distance(at.shapes[0], stacks->places[4 * c + 3]), -thick, 0.02);  // no other wall is nearer
+        EXPECT_NEAR(signed_distance(at.shapes[0], stacks->places[4 * c + 3]), -thick,
+                    0.02);  // no other wall is nearer
     }
     EXPECT_NEAR(least, 0.25, 0.02);
     EXPECT_NEAR(largest, 0.38125, 1e-12);
@@ -157,7 +161,9 @@ TEST(Columns, TheShellIsSeenFromOutsideTheBody) {
         EXPECT_EQ(stacks.layer.body, Region(1));
         const Surface shell = shell_of(wall, stacks);
         for (const auto& [a, b, c] : shell.triangles) {
-            const auto place = [&](int i) { return shell.points[static_cast<std::size_t>(i)] - at.shapes[0].centre; };
+            const auto place = [&](int i) {
+                return shell.points[static_cast<std::size_t>(i)] - at.shapes[0].centre;
+            };
             EXPECT_GT(determinant(place(a), place(b), place(c)), 0);
         }
     }

@@ -60,7 +60,8 @@ TEST(Normals, OfAPlaneAndOfAParaboloidAreExact) {
     for (int i = 0; i < 6; ++i) {
         const double turn = i * std::numbers::pi / 3, r = 1 + 0.1 * (i % 3), x = r * std::cos(turn),
                      y = r * std::sin(turn);
-        // in the frame of the tangent plane a paraboloid over another plane is none: small heights, a near one
+        // in the frame of the tangent plane a paraboloid over another plane is none: small heights, a near
+        // one
         points.push_back({x, y, 1e-5 * (0.3 * x * x - 0.2 * x * y + 0.1 * y * y + 0.4 * x - 0.5 * y)});
         triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
     }

@@ -5,6 +5,7 @@
 #include "io/vtk.h"
 #include "layered.h"
 #include "mesh/quality.h"
+#include "mesh/verify.h"
 
 #include <vtkCell.h>
 #include <vtkCellData.h>
@@ -34,6 +35,7 @@ TEST(LayersInFiles, TheMeshesHereAreRight) {
     for (const LayerPlan& plan : plans) {
         SCOPED_TRACE(name_of(plan));
         const Mesh mesh = layered_cube(4, plan);
+        EXPECT_EQ(verify(mesh), "");
         double tets = 0;
         for (const Tet t : mesh.tets.indices()) tets += volume(mesh, t);
         EXPECT_NEAR(tets + total_prism_volume(mesh), 64e-9, 1e-12 * 64e-9);
@@ -49,6 +51,7 @@ TEST(LayersInFiles, ComeBackPrismByPrism) {
         EXPECT_EQ(read.patch, mesh.patch);
         EXPECT_EQ(read.layer_at, mesh.layer_at);
         EXPECT_TRUE(read.free_vertices.empty());
+        EXPECT_EQ(verify(read), "");
         for (std::size_t l = 0; l < mesh.layers.size(); ++l) {
             EXPECT_EQ(read.layers[l].region, mesh.layers[l].region);
             EXPECT_EQ(read.layers[l].body, mesh.layers[l].body);

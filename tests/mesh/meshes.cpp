@@ -167,8 +167,10 @@ std::vector<BoundaryFacet> boundary_facets(const Mesh& mesh) {
     return facets;
 }
 
-/// Columns from a copy of each of the grid's vertices on the interface, half as far from the centre, to that vertex.
-PrismLayer columns_on(Array<Vertex, Vec3>& position, std::span<const std::array<Vertex, 3>> facets, int count) {
+/// Columns from a copy of each of the grid's vertices on the interface, half as far from the centre, to that
+/// vertex.
+PrismLayer columns_on(Array<Vertex, Vec3>& position, std::span<const std::array<Vertex, 3>> facets,
+                      int count) {
     const Vec3 centre = {0.5, 0.5, 0.5};
     PrismLayer layer{surroundings, Region(1), count, {}, {}};
     std::map<Vertex, int> column;

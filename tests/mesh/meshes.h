@@ -63,8 +63,8 @@ namespace kropla {
 /// cube_of_tets(n), n >= 3, in which all but the outermost cubes of the grid are region 1.
 [[nodiscard]] Mesh cube_in_cube(int n);
 
-/// cube_in_cube(3) whose inner cube, region 1, is shrunk to half, the gap filled by a layer outside of `count` prisms
-/// per column, all as high: 6 tets in the body, 12 wall triangles, 8 columns.
+/// cube_in_cube(3) whose inner cube, region 1, is shrunk to half, the gap filled by a layer outside of
+/// `count` prisms per column, all as high: 6 tets in the body, 12 wall triangles, 8 columns.
 ///
 ///      +-----------+
 ///      | +-------+ |    the shell at 1/3 and 2/3, tets of the surroundings beyond

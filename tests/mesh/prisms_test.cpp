@@ -31,13 +31,15 @@ Corners distorted(std::uint64_t seed) {
     return x;
 }
 
-/// The integral of the Jacobian of (r, s, z) -> (1-z) bottom(r, s) + z top(r, s): quadratic in z and in (r, s), so that
-/// two Gauss points and the edges' midpoints are exact.
+/// The integral of the Jacobian of (r, s, z) -> (1-z) bottom(r, s) + z top(r, s): quadratic in z and in (r,
+/// s), so that two Gauss points and the edges' midpoints are exact.
 double integrated_volume(const Corners& x) {
     double sum = 0;
     for (double z : {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)})
         for (const auto& [r, s] : {std::pair{0.5, 0.0}, {0.0, 0.5}, {0.5, 0.5}}) {
-            const auto mixed = [&](const Vec3& below, const Vec3& above) { return (1 - z) * below + z * above; };
+            const auto mixed = [&](const Vec3& below, const Vec3& above) {
+                return (1 - z) * below + z * above;
+            };
             const Vec3 by_r = mixed(x[1] - x[0], x[4] - x[3]), by_s = mixed(x[2] - x[0], x[5] - x[3]);
             const Vec3 by_z = (1 - r - s) * (x[3] - x[0]) + r * (x[4] - x[1]) + s * (x[5] - x[2]);
             sum += determinant(by_r, by_s, by_z) / 12;
@@ -45,7 +47,8 @@ double integrated_volume(const Corners& x) {
     return sum;
 }
 
-/// Cut into three tets: the top corner above `first` goes to all of the bottom, the one above `second` to its rest.
+/// Cut into three tets: the top corner above `first` goes to all of the bottom, the one above `second` to its
+/// rest.
 double cut_volume(const Corners& x, std::size_t first, std::size_t second, std::size_t third) {
     return std::abs(tet_volume(x[0], x[1], x[2], x[first + 3])) +
            std::abs(tet_volume(x[second], x[third], x[first + 3], x[second + 3])) +
@@ -138,7 +141,8 @@ TEST(Layer, ItsVerticesAreCounted) {
 TEST(Layer, ItsWallAndShellAreRigid) {
     const Mesh mesh = layered_cube(2);
     for (int column = 0; column < 8; ++column) {
-        const Vertex wall = column_vertex(mesh.layers[0], column, 0), shell = column_vertex(mesh.layers[0], column, 2);
+        const Vertex wall = column_vertex(mesh.layers[0], column, 0),
+                     shell = column_vertex(mesh.layers[0], column, 2);
         EXPECT_TRUE(constraint(mesh, wall, ball(mesh, wall)).rigid());
         EXPECT_TRUE(constraint(mesh, shell, ball(mesh, shell)).rigid());
         EXPECT_TRUE(ball(mesh, column_vertex(mesh.layers[0], column, 1)).empty());
@@ -147,7 +151,8 @@ TEST(Layer, ItsWallAndShellAreRigid) {
 
 TEST(Layer, GoesAlongWhenAMeshIsCompacted) {
     Mesh mesh = layered_cube(2);
-    // a vertex is put into the tets of the body and taken out again: a free slot before new ones, and one after
+    // a vertex is put into the tets of the body and taken out again: a free slot before new ones, and one
+    // after
     const Tet t = mesh.tet_at[column_vertex(mesh.layers[0], 0, 0)];
     const auto corners = mesh.tets[t];
     Cavity put_in{{t}, {}, {centroid(mesh, t)}, 0, 0};
@@ -162,7 +167,8 @@ TEST(Layer, GoesAlongWhenAMeshIsCompacted) {
     ASSERT_EQ(verify(mesh), "");
     ASSERT_FALSE(mesh.free_vertices.empty());
     std::swap(mesh.position[mesh.layers[0].columns[1]], mesh.position[mesh.free_vertices[0]]);
-    mesh.layer_at[mesh.free_vertices[0]] = Layer(0);  // that column vertex takes the last slot, its own is free
+    mesh.layer_at[mesh.free_vertices[0]] =
+        Layer(0);  // that column vertex takes the last slot, its own is free
     std::swap(mesh.layers[0].columns[1], mesh.free_vertices[0]);
     mesh.layer_at[mesh.free_vertices[0]] = Layer{};
     ASSERT_EQ(verify(mesh), "");

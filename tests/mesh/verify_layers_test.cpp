@@ -52,7 +52,8 @@ TEST(VerifyLayers, ColumnVerticesAreThereOnce) {
 TEST(VerifyLayers, PlacesAreFinite) {
     Mesh mesh = layered_cube(2);
     mesh.position[mesh.layers[0].columns[1]].z = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(verify(mesh), "vertex " + std::to_string(mesh.layers[0].columns[1].value) + " has no finite place");
+    EXPECT_EQ(verify(mesh),
+              "vertex " + std::to_string(mesh.layers[0].columns[1].value) + " has no finite place");
 }
 
 TEST(VerifyLayers, TrianglesStandOnColumns) {
@@ -63,7 +64,8 @@ TEST(VerifyLayers, TrianglesStandOnColumns) {
 
 TEST(VerifyLayers, EachColumnIsUsed) {
     Mesh mesh = layered_cube(2);
-    std::erase_if(mesh.layers[0].triangles, [](const auto& t) { return t[0] == 5 || t[1] == 5 || t[2] == 5; });
+    std::erase_if(mesh.layers[0].triangles,
+                  [](const auto& t) { return t[0] == 5 || t[1] == 5 || t[2] == 5; });
     EXPECT_EQ(verify(mesh), "layer 0 has column 5 in no triangle");
 }
 
@@ -71,9 +73,11 @@ TEST(VerifyLayers, WallsAreClosed) {
     Mesh mesh = layered_cube(2);
     const auto last = mesh.layers[0].triangles.back();
     mesh.layers[0].triangles.pop_back();
-    EXPECT_NE(verify(mesh).find("the wall of layer 0 is not closed at the edge of columns"), std::string::npos)
+    EXPECT_NE(verify(mesh).find("the wall of layer 0 is not closed at the edge of columns"),
+              std::string::npos)
         << verify(mesh);
-    mesh.layers[0].triangles.push_back({last[0], last[2], last[1]});  // turned over: its edges run the same way twice
+    mesh.layers[0].triangles.push_back(
+        {last[0], last[2], last[1]});  // turned over: its edges run the same way twice
     EXPECT_NE(verify(mesh).find("the wall of layer 0 is not closed"), std::string::npos) << verify(mesh);
 }
 
@@ -129,7 +133,8 @@ TEST(VerifyLayers, TheTetsEndAtTheShellAndAtTheWall) {
 TEST(VerifyLayers, TetsAtShellAndWallAreOfTheRightRegions) {
     Mesh mesh = layered_cube(2);
     mesh.layers[0].region = Region(1);
-    EXPECT_EQ(verify(mesh), "the tets at the shell of layer 0 are not of its region, or those at its wall are");
+    EXPECT_EQ(verify(mesh),
+              "the tets at the shell of layer 0 are not of its region, or those at its wall are");
 }
 
 TEST(VerifyLayers, TwoLayersOfABodyStandOnOneWall) {
@@ -137,7 +142,8 @@ TEST(VerifyLayers, TwoLayersOfABodyStandOnOneWall) {
     PrismLayer other = mesh.layers[0];  // its vertices are copies
     other.region = Region(1);
     other.columns.clear();
-    for (Vertex v : mesh.layers[0].columns) other.columns.push_back(mesh.position.push_back(mesh.position[v]));
+    for (Vertex v : mesh.layers[0].columns)
+        other.columns.push_back(mesh.position.push_back(mesh.position[v]));
     mesh.tet_at.resize(mesh.position.size());
     mesh.layer_at.resize(mesh.position.size());
     add_layer(mesh, other);

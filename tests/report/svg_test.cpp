@@ -1,3 +1,4 @@
+#include "io/xml.h"
 #include "report/svg.h"
 
 #include <gtest/gtest.h>

@@ -200,8 +200,8 @@ TEST(HeatLayer, NoTemperatureBeyondThoseAtTheStart) {
     EXPECT_LT(largest, 2500 + 22);
 }
 
-// A body with layers at rest, the vertices around its wall and inside it swinging, with T given and the source
-// that it needs.
+// A body with layers at rest, the vertices around its wall and inside it swinging, with T given and the
+// source that it needs.
 double manufactured_error(int n, int steps) {
     const double end = 0.2, k = 0.2;
     const auto exact = [](const Vec3& x, double t) {

@@ -2,6 +2,7 @@
 #include "session.h"
 #include "base/error.h"
 #include "base/random.h"
+#include "mesh/topology.h"
 #include "simulate/elements.h"
 #include "simulate/flow_potential.h"
 

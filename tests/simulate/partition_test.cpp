@@ -1,4 +1,5 @@
 #include "meshes.h"
+#include "mesh/topology.h"
 #include "simulate/partition.h"
 
 #include <gtest/gtest.h>

@@ -148,7 +148,7 @@ Sheet boxes_side_by_side(const std::vector<RunFrame>& frames, double right_margi
     const Vec3 extent = frames.front().max - frames.front().min;
     const double gap = 18, count = static_cast<double>(frames.size());
     const double width = (1600 - right_margin - gap) / count - gap;
-    const double height = std::min(1060.0, width * extent.z / extent.x);
+    const double height = std::min(800.0, width * extent.z / extent.x);
     Sheet sheet = make_sheet(1600, static_cast<int>(height + gap + 52));
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const double left = gap + static_cast<double>(i) * (width + gap);

@@ -1,0 +1,108 @@
+#include "adapt/adapt.h"
+#include "adapt/cases.h"
+#include "mesh/meshes.h"
+#include "mesh/properties.h"
+#include "mesh/quality.h"
+#include "mesh/verify.h"
+
+#include <gtest/gtest.h>
+
+namespace kropla {
+namespace {
+
+const Snapshot unit_cube{{{0, 0, 0}, {1, 1, 1}}, {0.2, 0, 0.2}, {}};
+
+TEST(Improve, NeverRaisesTheWorstAndUsesAllOperators) {
+    Changes all;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Mesh mesh = cube_in_cube(6);
+        jiggle(mesh, 0.016, seed);
+        spoil(mesh, Region(1), 20, seed);
+        const Mesh before = mesh;
+        const double worst = worst_of(mesh);
+        ASSERT_GT(worst, 10);
+        const Changes changes = improve(mesh, all_tets(mesh), unit_cube);
+        EXPECT_LT(worst_of(mesh), worst);
+        EXPECT_EQ(verify(mesh), "");
+        EXPECT_TRUE(same_shape(properties(mesh), properties(before)));
+        for (Vertex v : all_vertices(before))
+            EXPECT_TRUE(!on_interface(before, v) || mesh.position[v] == before.position[v]);
+        EXPECT_EQ(count_vertices(mesh) - count_vertices(before), changes.splits - changes.collapses);
+        all += changes;
+    }
+    EXPECT_GE(all.swaps, 1);
+    EXPECT_GE(all.moved, 1);
+    EXPECT_GE(all.cells_replaced, all.swaps);
+}
+
+TEST(Improve, NeverRaisesTheWorstOfAnyPart) {
+    // Worked on cell by cell: after each, no cell of the mesh may be worse than the worst before.
+    Mesh mesh = cube_in_cube(5);
+    jiggle(mesh, 0.02, 3);
+    spoil(mesh, Region(1), 5, 3);
+    double worst = worst_of(mesh);
+    for (Tet t : all_tets(mesh)) {
+        if (!alive(mesh, t)) continue;
+        improve(mesh, {&t, 1}, unit_cube);
+        const double now = worst_of(mesh);
+        ASSERT_LE(now, worst * (1 + 1e-12));
+        worst = now;
+    }
+}
+
+TEST(Improve, LeavesGoodCellsAndNamesTheChangedVertices) {
+    Mesh mesh = cube_in_cube(6);
+    jiggle(mesh, 0.016, 1);
+    spoil(mesh, Region(1), 5, 1);
+    const Mesh before = mesh;
+    EXPECT_EQ(improve(mesh, {}, unit_cube).cells_replaced, 0);
+    EXPECT_EQ(mesh, before);
+
+    const Changes changes = improve(mesh, all_tets(mesh), unit_cube);
+    for (Vertex v : all_vertices(mesh)) {
+        const bool known = v.value < static_cast<int>(before.position.size()) && alive(before, v);
+        if (known && mesh.position[v] == before.position[v]) continue;
+        EXPECT_TRUE(std::ranges::find(changes.vertices, v) != changes.vertices.end()) << v.value;
+    }
+}
+
+TEST(OptimisePlaces, MovesVerticesOnly) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Mesh mesh = cube_in_cube(6);
+        jiggle(mesh, 0.016, seed);
+        spoil(mesh, Region(1), 10, seed);
+        const Mesh before = mesh;
+        const Changes changes = optimise_places(mesh, all_tets(mesh));
+        EXPECT_EQ(mesh.tets, before.tets);
+        EXPECT_EQ(mesh.neighbour, before.neighbour);
+        EXPECT_EQ(verify(mesh), "");
+        EXPECT_TRUE(same(properties(mesh), properties(before)));
+        EXPECT_LT(worst_of(mesh), worst_of(before));
+        EXPECT_GE(changes.moved, 1);
+        EXPECT_GE(changes.smoothing_sweeps, 1);
+        EXPECT_EQ(changes.cells_replaced, 0);
+        for (Vertex v : all_vertices(mesh)) {
+            if (mesh.position[v] == before.position[v]) continue;
+            EXPECT_FALSE(on_interface(mesh, v));
+            EXPECT_TRUE(std::ranges::find(changes.vertices, v) != changes.vertices.end()) << v.value;
+        }
+    }
+}
+
+TEST(Changes, AddUp) {
+    Changes a, b;
+    a.swaps = 1, a.largest_ring = 3, a.vertices = {Vertex(1)}, a.cells_replaced = 2;
+    b.swaps = 2, b.largest_ring = 2, b.vertices = {Vertex(2)}, b.cells = {Tet(5)}, b.global_remeshes = 1;
+    a += b;
+    EXPECT_EQ(a.swaps, 3);
+    EXPECT_EQ(a.largest_ring, 3);
+    EXPECT_EQ(a.cells_replaced, 2);
+    EXPECT_EQ(a.global_remeshes, 1);
+    EXPECT_EQ(a.vertices, (std::vector<Vertex>{Vertex(1), Vertex(2)}));
+    EXPECT_EQ(a.cells, (std::vector<Tet>{Tet(5)}));
+}
+
+}  // namespace
+}  // namespace kropla

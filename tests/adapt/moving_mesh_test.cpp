@@ -1,0 +1,207 @@
+#include "adapt/cases.h"
+#include "adapt/moving_mesh.h"
+#include "mesh/properties.h"
+#include "mesh/quality.h"
+#include "mesh/verify.h"
+
+#include <gtest/gtest.h>
+
+namespace kropla {
+namespace {
+
+/// A body that starts at rest at `from` and is at `to` at t = 1, having turned by `angle` about y.
+Body travelling(const Vec3& from, const Vec3& to, const Vec3& semi_axes, double angle = 0) {
+    Body body{"body", {from, semi_axes, {}}};
+    body.motion = [way = to - from, angle](double t) {
+        return Pose{t * way, rotation_about({0, 1, 0}, t * angle)};
+    };
+    return body;
+}
+
+Domain small_box(std::vector<Body> bodies) {
+    return {{{-1.5, -1.5, -2}, {1.5, 1.5, 2}}, std::move(bodies), {0.35, 0.4, 0.8}};
+}
+
+Domain crossing_sphere() { return small_box({travelling({0, 0, -1}, {0.2, -0.1, 1}, {0.5, 0.5, 0.5})}); }
+
+/// One step as a run takes it: tried again where it was refused, then with half the time step. Returns the
+/// number of attempts.
+int step(MovingMesh& moving, double dt) {
+    const double start = moving.time();
+    for (int attempt = 1; attempt <= 12; ++attempt) {
+        const Mesh reference = moving.reference();
+        moving.begin_step();
+        moving.refine();
+        const Mesh refined = moving.before();
+        moving.move_boundary(start + dt);
+        moving.optimise();
+        EXPECT_EQ(moving.before(), refined);
+        EXPECT_EQ(moving.current().tets, refined.tets);
+        EXPECT_EQ(moving.current().neighbour, refined.neighbour);
+        const bool refused = moving.refusal().has_value();
+        EXPECT_EQ(moving.reference(), reference);
+        if (!refused) {
+            moving.accept();
+            return attempt;
+        }
+        moving.refuse();
+        EXPECT_EQ(moving.reference(), reference);
+        EXPECT_EQ(moving.time(), start);
+        if (attempt > 1) dt /= 2;
+    }
+    ADD_FAILURE() << "stuck at t = " << start;
+    return 0;
+}
+
+/// The longest edge in terms of the target size at its middle.
+double longest_edge(const Mesh& mesh, const Snapshot& at) {
+    double longest = 0;
+    for (Vertex v : all_vertices(mesh))
+        for (Vertex w : adjacent_vertices(mesh, v)) {
+            const Vec3 a = mesh.position[v], b = mesh.position[w];
+            longest = std::max(longest, distance(a, b) / target_size(at, (a + b) / 2));
+        }
+    return longest;
+}
+
+/// The way from t = 0 to 1 in `steps` steps, what is promised checked after each.
+void expect_good_crossing(const Domain& domain, std::uint64_t seed, int steps) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    MovingMesh moving(domain, improved_mesh(domain, seed), 0);
+    const Properties start = properties(moving.reference());
+    Changes all;
+    for (int i = 0; moving.time() < 1 - 1e-9; ++i) {
+        ASSERT_LE(i, 3 * steps) << "t = " << moving.time();
+        ASSERT_GT(step(moving, std::min(1.0 / steps, 1 - moving.time())), 0);
+        const Properties now = properties(moving.reference());
+        ASSERT_EQ(verify(moving.reference()), "") << "t = " << moving.time();
+        EXPECT_LE(worst_of(moving.reference()), AdaptOptions{}.floor) << "t = " << moving.time();
+        EXPECT_LE(worst_of(moving.before()), AdaptOptions{}.floor) << "t = " << moving.time();
+        EXPECT_TRUE(same_shape(now, start)) << "t = " << moving.time();
+        for (const auto& [region, volume] : start.volume)
+            EXPECT_NEAR(now.volume.at(region), volume, 1e-12 * volume) << "region " << region.value;
+        EXPECT_GT(moving.statistics().cells_touched, 0);
+        all += moving.statistics().refined;
+        all += moving.statistics().optimised;
+        all += moving.statistics().remeshed;
+    }
+    // What the bodies leave behind them is filled again.
+    EXPECT_LE(longest_edge(moving.reference(), snapshot(domain, moving.time())), 2.5);
+    EXPECT_EQ(all.global_remeshes, 0);
+    EXPECT_GT(all.swaps, 0);
+    EXPECT_GT(all.splits, 0);
+    EXPECT_GT(all.collapses, 0);
+    EXPECT_GT(all.moved, 0);
+}
+
+TEST(MovingMesh, ASphereCrossesABox) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_good_crossing(crossing_sphere(), seed, 15);
+}
+
+TEST(MovingMesh, AnEllipsoidCrossesABoxAndTurns) {
+    const Domain domain = small_box({travelling({0, 0, -1}, {0.1, 0.2, 1}, {0.6, 0.5, 0.55}, 1.0)});
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) expect_good_crossing(domain, seed, 15);
+}
+
+TEST(MovingMesh, TwoBodiesPassEachOther) {
+    const Vec3 radii{0.4, 0.4, 0.4};
+    const Domain domain = small_box({travelling({-0.7, 0, -1}, {-0.7, 0, 1}, radii),
+                                     travelling({0.7, 0.1, 1}, {0.7, 0.1, -1}, radii)});
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) expect_good_crossing(domain, seed, 15);
+}
+
+TEST(MovingMesh, TheBodyIsWhereItShouldBe) {
+    const Domain domain = crossing_sphere();
+    MovingMesh moving(domain, improved_mesh(domain, 1), 0);
+    for (int i = 0; i < 5; ++i) step(moving, 1.0 / 15);
+    const Shape shape = shape_at(domain.bodies.front(), moving.time());
+    for (Vertex v : all_vertices(moving.reference()))
+        if (on_interface(moving.reference(), v)) {
+            EXPECT_NEAR(signed_distance(shape, moving.reference().position[v]), 0, 1e-13);
+        }
+}
+
+TEST(MovingMesh, AnAttemptDoesNotTouchTheReference) {
+    const Domain domain = crossing_sphere();
+    const Mesh start = improved_mesh(domain, 1);
+    MovingMesh moving(domain, start, 0);
+    moving.begin_step();
+    EXPECT_EQ(moving.before(), start);
+    EXPECT_EQ(moving.current(), start);
+    EXPECT_EQ(moving.refine().cells_replaced, 0);  // nothing was refused
+    moving.move_boundary(1.0 / 15);
+    moving.optimise();
+    EXPECT_EQ(moving.reference(), start);
+    EXPECT_EQ(moving.before(), start);
+    EXPECT_NE(moving.current(), start);
+    moving.refuse();
+    EXPECT_EQ(moving.reference(), start);
+    EXPECT_EQ(moving.time(), 0);
+}
+
+TEST(MovingMesh, AcceptNamesEveryVertexThatIsNewOrWasMoved) {
+    const Domain domain = crossing_sphere();
+    MovingMesh moving(domain, improved_mesh(domain, 2), 0);
+    for (int i = 0; i < 5; ++i) {
+        moving.begin_step();
+        moving.refine();
+        moving.move_boundary(moving.time() + 1.0 / 15);
+        moving.optimise();
+        ASSERT_FALSE(moving.refusal());
+        const auto changed = moving.accept().vertices;
+        const Mesh &before = moving.before(), &after = moving.reference();
+        for (Vertex v : all_vertices(after)) {
+            const bool known = v.value < static_cast<int>(before.position.size()) && alive(before, v);
+            if (known && before.position[v] == after.position[v]) continue;
+            EXPECT_TRUE(std::ranges::find(changed, v) != changed.end()) << v.value;
+        }
+    }
+}
+
+TEST(MovingMesh, RefusesAGiantStepAndSaysWhy) {
+    const Domain domain = crossing_sphere();
+    const Mesh start = improved_mesh(domain, 1);
+    MovingMesh moving(domain, start, 0);
+    moving.begin_step();
+    moving.refine();
+    moving.move_boundary(0.9);
+    moving.optimise();
+    const auto refusal = moving.refusal();
+    ASSERT_TRUE(refusal);
+    EXPECT_NE(refusal->why.find("cell "), std::string::npos) << refusal->why;
+    EXPECT_NE(refusal->why.find(" m "), std::string::npos) << refusal->why;  // its place
+    EXPECT_EQ(refusal->why.find('\n'), std::string::npos);
+    ASSERT_TRUE(refusal->limiting.exists());
+    EXPECT_TRUE(alive(moving.current(), refusal->limiting));
+    EXPECT_GT(refusal->advised_dt, 0);
+    EXPECT_LT(refusal->advised_dt, 0.9);
+    moving.refuse();
+    EXPECT_EQ(moving.reference(), start);
+    EXPECT_EQ(moving.time(), 0);
+
+    moving.begin_step();
+    EXPECT_GT(moving.refine().cells.size() + moving.refine().vertices.size(), 0u);  // it knows where it stuck
+    moving.move_boundary(1.0 / 30);
+    moving.optimise();
+    EXPECT_FALSE(moving.refusal());
+    moving.accept();
+    EXPECT_EQ(moving.time(), 1.0 / 30);
+    EXPECT_EQ(verify(moving.reference()), "");
+    EXPECT_TRUE(same_shape(properties(moving.reference()), properties(start)));
+
+    moving.begin_step();
+    EXPECT_EQ(moving.refine().cells_replaced, 0);  // the trouble is over
+}
+
+TEST(MovingMesh, SameInputSameMeshes) {
+    const Domain domain = crossing_sphere();
+    const auto run = [&] {
+        MovingMesh moving(domain, improved_mesh(domain, 3), 0);
+        for (int i = 0; i < 6; ++i) step(moving, 0.08);
+        return moving.reference();
+    };
+    EXPECT_EQ(run(), run());
+}
+
+}  // namespace
+}  // namespace kropla
