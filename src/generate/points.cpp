@@ -64,8 +64,9 @@ std::vector<Vec3> sample_shells(const Snapshot& at, const std::vector<Surface>& 
 PointSet sample_points(const Snapshot& at, std::uint64_t seed) {
     PointSet set;
     std::size_t stage = 0;
-    for (const Shape& shape : at.shapes) {
-        set.surfaces.push_back(triangulate_surface(shape, at.size.surface, stage_seed(seed, stage++)));
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        set.surfaces.push_back(
+            triangulate_surface(at.shapes[body], surface_size(at, body), stage_seed(seed, stage++)));
         set.first_of_surface.push_back(static_cast<int>(set.points.size()));
         append(set.points, set.surfaces.back().points);
     }

@@ -124,6 +124,14 @@ TEST(LayeredMesh, OfAnEllipsoid) {
     }
 }
 
+TEST(LayeredMesh, WallsAreFinerWhereTheLayerEndsInThinPrisms) {
+    const Domain domain = with_layers(small_domain({ball({0, 0, 4}, 0.8)}), {2, 0.01, 1.2, Side::both, {}});
+    EXPECT_NEAR(surface_size(snapshot(domain, 0), 0), 0.18, 1e-12);  // 0.4 asked
+    const Mesh mesh = generate_mesh(domain, 1);
+    expect_layered_mesh(domain, mesh, true);
+    for (Layer l : {Layer(0), Layer(1)}) EXPECT_LE(largest_jump(mesh, l), 2);
+}
+
 TEST(LayeredMesh, InsideIsThinnedAtSharpEnds) {
     Domain domain = small_domain({turned_ellipsoid({0, 0, 4}, {1.6, 0.8, 0.8})});  // the tips' radius: 0.4
     domain.size.surface = 0.3;
