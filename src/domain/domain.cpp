@@ -32,8 +32,8 @@ double distance_to_bodies(const Snapshot& at, const Vec3& x) {
 }
 
 double surface_size(const Snapshot& at, std::size_t body) {
-    // On equilateral triangles of edge h a regular tet is 0.272 h / height times as large as a prism: 1.6^3 of
-    // that is allowed, as the tets found differ by a quarter from regular ones in this, by measurement.
+    // On equilateral triangles of edge h a regular tet is 0.272 h / height times as large as a prism: 1.6^3
+    // of that is allowed, as the tets found differ by a quarter from regular ones in this, by measurement.
     constexpr double most_per_height = 15;
     if (body >= at.layers.size() || !at.layers[body]) return at.size.surface;
     const LayerOptions& layer = *at.layers[body];

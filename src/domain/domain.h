@@ -81,9 +81,9 @@ struct Snapshot {
 
 /// The distance from x to the nearest body's surface [m], from either side; infinite without bodies.
 [[nodiscard]] double distance_to_bodies(const Snapshot& at, const Vec3& x);
-/// The edge length wanted on the surface of a body and on its shells [m]: size.surface; or less where its layer
-/// ends in so thin a prism, as asked, that the first tets on triangles of that size would be more than twice as
-/// large, by the cube roots of their volumes.
+/// The edge length wanted on the surface of a body and on its shells [m]: size.surface; or less where its
+/// layer ends in so thin a prism, as asked, that the first tets on triangles of that size would be more than
+/// twice as large, by the cube roots of their volumes.
 [[nodiscard]] double surface_size(const Snapshot& at, std::size_t body);
 /// The target edge length at x [m]: the least that SizeField gives for a body at its surface_size.
 [[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
