@@ -25,7 +25,7 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file
     vtkUnstructuredGrid* grid = reader->GetOutput();
     if (reader->GetErrorCode() != 0 || grid->GetNumberOfCells() == 0)
         throw FileError(file.string() + ": damaged");
-    for (const char* name : {"region", "aspect_ratio"}) {
+    for (const char* name : {"region", "layer", "aspect_ratio"}) {
         if (grid->GetCellData()->GetArray(name) == nullptr) {
             throw FileError(file.string() + ": has no cell array " + name);
         }

@@ -6,6 +6,7 @@
 #include "scene.h"
 #include "sheet.h"
 
+#include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 
@@ -98,6 +99,15 @@ void add_colour_bar(Sheet& sheet, const Place& place, vtkScalarsToColors* colour
     }
 }
 
+/// "72 562 tetrahedra and 1 812 prisms"
+std::string cell_count(vtkUnstructuredGrid* grid) {
+    vtkIdType prisms = 0;
+    for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+        if (grid->GetCellType(cell) == VTK_WEDGE) ++prisms;
+    const std::string tets = fmt::format("{} tetrahedra", thousands(grid->GetNumberOfCells() - prisms));
+    return prisms == 0 ? tets : fmt::format("{} and {} prisms", tets, thousands(prisms));
+}
+
 /// The initial mesh: the whole box and, beside it, the droplet's neighbourhood. As the paper's figures 2b,
 /// 3b, 6a, 6b.
 void draw_initial_mesh(const RunFrame& frame, const std::filesystem::path& file) {
@@ -114,7 +124,7 @@ void draw_initial_mesh(const RunFrame& frame, const std::filesystem::path& file)
     add_text(sheet, box.place.left + box.place.width / 2, 1065, "The box, cut open",
              {.size = 24, .bold = true});
     add_text(sheet, box.place.left + box.place.width / 2, 1098,
-             fmt::format("{} tetrahedra", thousands(frame.grid->GetNumberOfCells())),
+             cell_count(frame.grid),
              {.size = 20, .colour = faint});
     add_text(sheet, left + near.place.width / 2, 1065, "Around the droplet", {.size = 24, .bold = true});
     add_text(sheet, left + near.place.width / 2, 1098,

@@ -26,7 +26,7 @@ namespace {
 
 using Rgb = std::array<unsigned char, 3>;
 
-constexpr Rgb surroundings_colour = {208, 230, 252};
+constexpr Rgb surroundings_colour = {208, 230, 252}, prisms_colour = {124, 196, 164};
 constexpr std::array<Rgb, 4> body_colours = {{{255, 150, 40}, {205, 75, 80}, {235, 190, 60}, {160, 90, 140}}};
 
 constexpr std::array<std::uint32_t, 10> inferno = {0x000004, 0x1b0c41, 0x4a0c6b, 0x781c6d, 0xa52c60,
@@ -46,13 +46,23 @@ double centroid_y(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdList* corners)
     return sum / static_cast<double>(corners->GetNumberOfIds());
 }
 
-vtkSmartPointer<vtkUnsignedCharArray> region_colours(vtkDataArray* region) {
+/// A region's tets in its colour; prisms around a body in one of their own, those inside it in a paler shade.
+Rgb cell_colour(std::size_t region, bool prism) {
+    if (region == 0) return prism ? prisms_colour : surroundings_colour;
+    Rgb colour = body_colours[(region - 1) % body_colours.size()];
+    for (unsigned char& part : colour)
+        if (prism) part = static_cast<unsigned char>((part + 255) / 2);
+    return colour;
+}
+
+vtkSmartPointer<vtkUnsignedCharArray> cell_colours(vtkCellData* cells) {
+    vtkDataArray* region = cells->GetArray("region");
+    vtkDataArray* layer = cells->GetArray("layer");
     auto colours = vtkSmartPointer<vtkUnsignedCharArray>::New();
     colours->SetNumberOfComponents(3);
     for (vtkIdType i = 0; i < region->GetNumberOfTuples(); ++i) {
-        const auto r = static_cast<std::size_t>(region->GetTuple1(i));
-        colours->InsertNextTypedTuple(
-            (r == 0 ? surroundings_colour : body_colours[(r - 1) % body_colours.size()]).data());
+        const bool prism = layer->GetTuple1(i) > 0;
+        colours->InsertNextTypedTuple(cell_colour(static_cast<std::size_t>(region->GetTuple1(i)), prism).data());
     }
     return colours;
 }
@@ -109,7 +119,7 @@ vtkSmartPointer<vtkPolyData> section(vtkUnstructuredGrid* grid, double y) {
 vtkSmartPointer<vtkActor> coloured_by_region(vtkPolyData* facets, double line_width) {
     vtkNew<vtkPolyData> coloured;
     coloured->ShallowCopy(facets);
-    coloured->GetCellData()->SetScalars(region_colours(facets->GetCellData()->GetArray("region")));
+    coloured->GetCellData()->SetScalars(cell_colours(facets->GetCellData()));
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(coloured);
     mapper->SetScalarModeToUseCellData();
