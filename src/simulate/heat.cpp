@@ -2,7 +2,6 @@
 #include "simulate/heat.h"
 
 #include "base/error.h"
-#include "mesh/topology.h"
 #include "simulate/elements.h"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "mesh/cells.h"
-#include "mesh/topology.h"
 #include "simulate/carried.h"
 #include "simulate/flow_potential.h"
 #include "simulate/heat_cell.h"

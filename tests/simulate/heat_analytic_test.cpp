@@ -1,6 +1,5 @@
 #include "meshes.h"
 #include "session.h"
-#include "mesh/topology.h"
 #include "simulate/elements.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,6 @@
 #include "session.h"
 #include "base/error.h"
 #include "base/random.h"
-#include "mesh/topology.h"
 #include "simulate/elements.h"
 #include "simulate/flow_potential.h"
 

@@ -26,8 +26,8 @@ Mesh unit_cube_with_body(int n);
 /// hollow).
 Mesh ball_of_shells(const std::vector<double>& radii, const std::function<int(int shell)>& region);
 
-/// The mesh with prisms on the surface of its body, region 1, outside (`of` = 0) or inside it (1): the body is
-/// shrunk towards `middle` by `depth` of its size, and what came free is filled with `count` prisms per
+/// The mesh with prisms on the surface of its body, region 1, outside (`of` = 0) or inside it (1): the body
+/// is shrunk towards `middle` by `depth` of its size, and what came free is filled with `count` prisms per
 /// column. For layers on both sides the outer one comes first.
 Mesh with_layer(const Mesh& mesh, const Vec3& middle, Region of, int count, double depth);
 

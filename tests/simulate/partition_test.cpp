@@ -1,5 +1,4 @@
 #include "meshes.h"
-#include "mesh/topology.h"
 #include "simulate/partition.h"
 
 #include <gtest/gtest.h>
