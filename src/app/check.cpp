@@ -186,7 +186,7 @@ std::string worst_cell(const Mesh& mesh, const Sample& all) {
 }  // namespace
 
 CheckReport check_file(const std::filesystem::path& path) {
-    Cells cells = read_vtu_cells(path);
+    FileCells cells = read_vtu_cells(path);
     const std::size_t vertices = cells.position.size(), tets = cells.tets.size(), prisms = cells.prisms.size();
     Mesh mesh;
     try {

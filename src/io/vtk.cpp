@@ -305,7 +305,7 @@ LoosePrism read_prism(const std::filesystem::path& path, vtkUnstructuredGrid& gr
     return prism;
 }
 
-void read_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid, Cells& cells) {
+void read_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid, FileCells& cells) {
     check_cells(path, grid);
     const auto regions = read_numbers(path, grid, "region");
     std::optional<std::vector<std::int32_t>> layers;  // "layer" may mean something else where there are no prisms
@@ -391,18 +391,18 @@ void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<co
     write_file(path, writer->GetOutputString());
 }
 
-Cells read_vtu_cells(const std::filesystem::path& path) {
+FileCells read_vtu_cells(const std::filesystem::path& path) {
     const std::string bytes = read_file(path);
     check_vtu_text(path, bytes);
     const auto grid = parse(path, bytes);
-    Cells cells;
+    FileCells cells;
     cells.position = read_positions(path, *grid);
     read_cells(path, *grid, cells);
     cells.fields = read_fields(path, *grid);
     return cells;
 }
 
-Frame make_frame(Cells cells) {
+Frame make_frame(FileCells cells) {
     Frame frame = {make_mesh(std::move(cells.position), std::move(cells.tets), std::move(cells.region)),
                    std::move(cells.fields)};
     const BoundingBox box = bounding_box(frame.mesh);
@@ -417,7 +417,7 @@ Frame make_frame(Cells cells) {
 }
 
 Frame read_vtu(const std::filesystem::path& path) {
-    Cells cells = read_vtu_cells(path);
+    FileCells cells = read_vtu_cells(path);
     try {
         return make_frame(std::move(cells));
     } catch (const FileError& error) {

@@ -21,7 +21,7 @@ namespace kropla {
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {});
 
 /// What a VTU file says, before neighbours are known: cells as they stand, right or wrong.
-struct Cells {
+struct FileCells {
     Array<Vertex, Vec3> position;            // [m]
     Array<Tet, std::array<Vertex, 4>> tets;  // vertices exist; orientation and conformity are not looked at
     Array<Tet, Region> region;               // 0 where the file has no cell array "region"
@@ -32,7 +32,7 @@ struct Cells {
 /// Throws FileError, in one line, if the file is missing, unreadable, not VTU, truncated or damaged, or has
 /// no tets, cells that are neither linear tets nor prisms, prisms without a cell array "layer", cells of vertices
 /// that do not exist, or coordinates that are not finite. Tets are numbered in the order of the file.
-[[nodiscard]] Cells read_vtu_cells(const std::filesystem::path& path);
+[[nodiscard]] FileCells read_vtu_cells(const std::filesystem::path& path);
 
 struct Frame {
     Mesh mesh;
@@ -43,7 +43,7 @@ struct Frame {
 /// bounding box in which they lie, exactly by coordinates, or of the layer whose wall or shell they are, else
 /// patch 0. The cells are not checked: see `verify`. Throws FileError as make_mesh and attach_layers, naming the
 /// cell but not the file.
-[[nodiscard]] Frame make_frame(Cells cells);
+[[nodiscard]] Frame make_frame(FileCells cells);
 
 /// Both in one; all errors name the file.
 [[nodiscard]] Frame read_vtu(const std::filesystem::path& path);

@@ -158,7 +158,7 @@ template <class Spoil>
 std::string refusal(const Mesh& mesh, Spoil spoil) {
     const Folder folder;
     write_vtu(folder / "a.vtu", mesh);
-    Cells cells = read_vtu_cells(folder / "a.vtu");
+    FileCells cells = read_vtu_cells(folder / "a.vtu");
     spoil(cells.prisms);
     return message_of<FileError>([&] { (void)make_frame(std::move(cells)); });
 }
