@@ -2,9 +2,11 @@
 # make demo       runs the droplet case into demo/droplet and draws demo/pictures; what was there is replaced
 # make test       builds and runs all tests
 # make bench      builds and runs the benchmarks; beside CGAL, if libcgal-dev is installed
+# make bench-peers  the moving droplet by Kropla and by the mesh generators that are installed (Gmsh, TetGen), one
+#                 table; STEPS=10: fewer meshes of the others
 # Each installs the Debian packages that are missing.
 
-.PHONY: all demo test bench packages configure clean
+.PHONY: all demo test bench bench-peers packages configure clean
 
 all: configure
 	cmake --build --preset release
@@ -28,6 +30,11 @@ bench: packages
 	cmake --preset bench
 	cmake --build --preset bench --target kropla_bench
 	build/bench/bin/kropla_bench
+
+bench-peers: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla peers_measure peers_surfaces
+	bench/peers/bench-peers build/bench/bin build/bench/peers $(if $(STEPS),--steps $(STEPS))
 
 clean:
 	rm -rf build demo

@@ -22,7 +22,7 @@ struct Changes {
     std::vector<Tet> cells;
     int smoothing_sweeps = 0, moved = 0, swaps = 0, splits = 0, collapses = 0;
     int local_remeshes = 0, largest_ring = 0, global_remeshes = 0;
-    int cells_replaced = 0;
+    int cells_replaced = 0, vertices_inserted = 0;
 
     Changes& operator+=(const Changes& other);
 };

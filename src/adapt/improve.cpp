@@ -55,6 +55,7 @@ struct Improvement {
 
     void carry_out(const Cavity& cavity) {
         changes.cells_replaced += static_cast<int>(cavity.removed.size());
+        changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
         for (std::size_t k = 0; k < cavity.inserted.size(); ++k)
             changes.vertices.push_back(next_vertex(mesh, k));
         for (Tet t : replace_cells(mesh, cavity)) {
@@ -150,6 +151,7 @@ Changes& Changes::operator+=(const Changes& other) {
     largest_ring = std::max(largest_ring, other.largest_ring);
     global_remeshes += other.global_remeshes;
     cells_replaced += other.cells_replaced;
+    vertices_inserted += other.vertices_inserted;
     return *this;
 }
 

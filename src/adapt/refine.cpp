@@ -156,6 +156,7 @@ void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
     const auto added = replace_cells(mesh, cavity);
     changes.cells.insert(changes.cells.end(), added.begin(), added.end());
     changes.cells_replaced += static_cast<int>(cavity.removed.size());
+    changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
 }
 
 }  // namespace

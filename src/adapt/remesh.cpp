@@ -314,6 +314,7 @@ void unite(Mesh& mesh, const Cavity& cavity, Changes& changes) {
     const auto added = replace_cells(mesh, cavity);
     changes.cells.insert(changes.cells.end(), added.begin(), added.end());
     changes.cells_replaced += static_cast<int>(cavity.removed.size());
+    changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
 }
 
 /// Climbs from one bad cell: its neighbourhood is remeshed, ring by ring, until its place is below the floor.

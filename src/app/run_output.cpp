@@ -80,7 +80,10 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
     row.largest_ring = c.largest_ring;
     row.global_remeshes = c.global_remeshes;
     row.touched_fraction = report.touched_fraction;
+    row.kept_vertices = report.kept_vertices;
+    row.kept_tets = report.kept_tets;
     row.mesh_seconds = report.mesh_seconds;
+    row.mesh_cpu_seconds = report.mesh_cpu_seconds;
     row.simulate_seconds = report.simulate_seconds;
     row.transfer_seconds = report.transfer_seconds;
     row.fields = conserved(it_);

@@ -8,24 +8,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace kropla {
 namespace {
 
-/// Adds the time from its construction to its end to a sum.
+/// Adds the time from its construction to its end to a sum: of the wall's clock and, if asked for, of the processor.
 class Stopwatch {
 public:
-    explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+    explicit Stopwatch(double& seconds, double* cpu_seconds = nullptr)
+        : seconds_(seconds), cpu_seconds_(cpu_seconds) {}
     ~Stopwatch() {
         seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        if (cpu_seconds_ != nullptr)
+            *cpu_seconds_ += static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC;
     }
     Stopwatch(const Stopwatch&) = delete;
     Stopwatch& operator=(const Stopwatch&) = delete;
 
 private:
     double& seconds_;
+    double* cpu_seconds_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::clock_t cpu_start_ = std::clock();
 };
 
 double energy_in(const Case& it, const Mesh& mesh, const std::vector<NodalField>& fields) {
@@ -47,12 +54,12 @@ void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, cons
              StepReport& report) {
     std::span<const Vertex> changed;
     {
-        const Stopwatch watch(report.mesh_seconds);
+        const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
         moving.begin_step();                   // 2.1
         changed = moving.refine().vertices;    // 2.2
     }
     if (!changed.empty()) carry_fields(fields, moving.reference(), moving.before(), changed, it, report);
-    const Stopwatch watch(report.mesh_seconds);
+    const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
     moving.move_boundary(t);                   // 2.3
     moving.optimise();                         // 2.4
 }
@@ -70,7 +77,7 @@ void accept(State& state, std::vector<NodalField> fields, const Case& it, StepRe
     MovingMesh& moving = state.moving;
     std::span<const Vertex> changed;
     {
-        const Stopwatch watch(report.mesh_seconds);
+        const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
         changed = moving.accept().vertices;
     }
     carry_fields(fields, moving.before(), moving.reference(), changed, it, report);
@@ -83,6 +90,23 @@ Changes all_changes(const StepStatistics& s) {
     all += s.optimised;
     all += s.remeshed;
     return all;
+}
+
+int count_new_cells(const Mesh& mesh, std::vector<Tet> cells) {
+    std::ranges::sort(cells);
+    const auto repeated = std::ranges::unique(cells);
+    const auto is_there = [&](Tet t) { return alive(mesh, t); };
+    return static_cast<int>(std::count_if(cells.begin(), repeated.begin(), is_there));
+}
+
+void report_changes(const MovingMesh& moving, StepReport& report) {
+    const Mesh& mesh = moving.reference();
+    const StepStatistics& done = moving.statistics();
+    report.changes = all_changes(done);
+    const double tets = count_tets(mesh), vertices = count_vertices(mesh);
+    report.touched_fraction = done.cells_touched / tets;
+    report.kept_tets = 1 - count_new_cells(mesh, report.changes.cells) / tets;
+    report.kept_vertices = 1 - report.changes.vertices_inserted / vertices;
 }
 
 }  // namespace
@@ -109,9 +133,7 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt
     }
     report.time = moving.time();
     report.dt = dt;
-    report.changes = all_changes(moving.statistics());
-    report.touched_fraction = static_cast<double>(moving.statistics().cells_touched) /
-                              static_cast<double>(count_tets(moving.reference()));
+    report_changes(moving, report);
     return report;
 }
 

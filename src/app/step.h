@@ -20,7 +20,9 @@ struct StepReport {
     int attempts = 0;
     Changes changes;          // of the mesh, at all stages of the accepted attempt
     double touched_fraction = 0;
+    double kept_vertices = 0, kept_tets = 0;  // of those there are now, the share that was there before the step
     double mesh_seconds = 0, simulate_seconds = 0, transfer_seconds = 0;  // all attempts
+    double mesh_cpu_seconds = 0;              // of all threads
     double energy = 0;              // [J] after the step
     double energy_by_transfer = 0;  // [J] of it, that carrying the solution added
     std::string refused;               // why the last refused attempt was, if one was

@@ -16,7 +16,8 @@ constexpr std::string_view columns =
     "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,min_dihedral "
     "[deg],"
     "max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,largest_ring,global_remeshes,"
-    "touched_fraction,mesh_seconds [s],simulate_seconds [s],transfer_seconds [s]";
+    "touched_fraction,kept_vertices,kept_tets,mesh_seconds [s],simulate_seconds [s],transfer_seconds [s],"
+    "mesh_cpu_seconds [s]";
 
 /// The step of a row; 0 if it has none.
 int step_of(const std::string& line) {
@@ -59,10 +60,11 @@ std::string csv_header(const std::vector<FieldBalance>& fields) {
 
 std::string csv_line(const StepRow& r) {
     std::string line = fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.step, r.time, r.dt, r.attempts,
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.step, r.time, r.dt, r.attempts,
         r.vertices, r.tets, r.prisms, r.max_aspect_ratio, r.p999_aspect_ratio, r.min_dihedral, r.max_dihedral,
         r.smoothing_sweeps, r.swaps, r.splits, r.collapses, r.local_remeshes, r.largest_ring,
-        r.global_remeshes, r.touched_fraction, r.mesh_seconds, r.simulate_seconds, r.transfer_seconds);
+        r.global_remeshes, r.touched_fraction, r.kept_vertices, r.kept_tets, r.mesh_seconds, r.simulate_seconds,
+        r.transfer_seconds, r.mesh_cpu_seconds);
     for (const FieldBalance& f : r.fields) line += fmt::format(",{},{}", f.integral, f.transfer_error);
     return line;
 }

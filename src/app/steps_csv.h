@@ -29,7 +29,9 @@ struct StepRow {
     int largest_ring = 0;  // of cells around a cluster that local remeshing had to take in
     int global_remeshes = 0;
     double touched_fraction = 0;                                          // [-] of the cells
+    double kept_vertices = 0, kept_tets = 0;                              // [-] of those there are now
     double mesh_seconds = 0, simulate_seconds = 0, transfer_seconds = 0;  // [s]
+    double mesh_cpu_seconds = 0;                                          // [s] of all threads
     std::vector<FieldBalance> fields;  // the same ones, in the same order, in each row of a run
 };
 

@@ -30,8 +30,8 @@ TEST(StepsTable, HasNamesAndUnits) {
     EXPECT_EQ(csv_header(energy),
               "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,"
               "min_dihedral [deg],max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,"
-              "largest_ring,global_remeshes,touched_fraction,mesh_seconds [s],simulate_seconds [s],"
-              "transfer_seconds [s],energy_integral [J],energy_transfer_error");
+              "largest_ring,global_remeshes,touched_fraction,kept_vertices,kept_tets,mesh_seconds [s],"
+              "simulate_seconds [s],transfer_seconds [s],mesh_cpu_seconds [s],energy_integral [J],energy_transfer_error");
 }
 
 TEST(StepsTable, RowsFitTheHeader) {
@@ -57,11 +57,14 @@ TEST(StepsTable, RowsFitTheHeader) {
                          .largest_ring = 17,
                          .global_remeshes = 18,
                          .touched_fraction = 19,
-                         .mesh_seconds = 20,
-                         .simulate_seconds = 21,
-                         .transfer_seconds = 22,
-                         .fields = {{"energy", "J", 23, 24}}};
-    EXPECT_EQ(csv_line(row), "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24");
+                         .kept_vertices = 20,
+                         .kept_tets = 21,
+                         .mesh_seconds = 22,
+                         .simulate_seconds = 23,
+                         .transfer_seconds = 24,
+                         .mesh_cpu_seconds = 25,
+                         .fields = {{"energy", "J", 26, 27}}};
+    EXPECT_EQ(csv_line(row), "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27");
 }
 
 TEST(StepsTable, KeepsEveryBitOfANumber) {
