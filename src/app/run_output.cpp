@@ -17,7 +17,7 @@ std::string frame_name(std::int64_t step) { return fmt::format("frames/{:05}.vtu
 
 std::vector<FieldBalance> conserved(const Case& it) {
     if (!it.heat) return {};
-    return {{"energy", "J", 0, 0}};
+    return {{.field = "energy", .unit = "J", .from_bodies = std::vector<double>(it.domain.bodies.size())}};
 }
 
 /// The highest rung of the repair ladder that was climbed.
@@ -90,6 +90,7 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
     for (FieldBalance& field : row.fields) {
         field.integral = report.energy;
         field.transfer_error = report.energy != 0 ? report.energy_by_transfer / std::abs(report.energy) : 0;
+        field.from_bodies = report.heat_from_bodies;
     }
     table_->append(row);
 }

@@ -68,8 +68,10 @@ void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, cons
 void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, const Ranks& ranks,
               double dt, StepReport& report) {
     const Stopwatch watch(report.simulate_seconds);
-    if (it.heat)
+    if (!it.heat) return;
+    const HeatReport heat =
         step_heat(ranks, moving.before(), moving.current(), *it.heat, fields.front(), moving.time(), dt);
+    for (const SurfaceFlux& flux : heat.surfaces) report.heat_from_bodies.push_back(flux.total);
 }
 
 /// Stage 2.6.

@@ -25,6 +25,7 @@ struct StepReport {
     double mesh_cpu_seconds = 0;              // of all threads
     double energy = 0;              // [J] after the step
     double energy_by_transfer = 0;  // [J] of it, that carrying the solution added
+    std::vector<double> heat_from_bodies = {};  // [W] through the surface of body 1, 2, ...
     std::string refused;               // why the last refused attempt was, if one was
 };
 

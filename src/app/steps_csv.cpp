@@ -54,6 +54,8 @@ std::string csv_header(const std::vector<FieldBalance>& fields) {
     std::string header(columns);
     for (const FieldBalance& f : fields) {
         header += fmt::format(",{0}_integral [{1}],{0}_transfer_error", f.field, f.unit);
+        for (std::size_t body = 1; body <= f.from_bodies.size(); ++body)
+            header += fmt::format(",{}_from_body_{} [{}/s]", f.field, body, f.unit);
     }
     return header;
 }
@@ -65,7 +67,10 @@ std::string csv_line(const StepRow& r) {
         r.smoothing_sweeps, r.swaps, r.splits, r.collapses, r.local_remeshes, r.largest_ring,
         r.global_remeshes, r.touched_fraction, r.kept_vertices, r.kept_tets, r.mesh_seconds, r.simulate_seconds,
         r.transfer_seconds, r.mesh_cpu_seconds);
-    for (const FieldBalance& f : r.fields) line += fmt::format(",{},{}", f.integral, f.transfer_error);
+    for (const FieldBalance& f : r.fields) {
+        line += fmt::format(",{},{}", f.integral, f.transfer_error);
+        for (const double flux : f.from_bodies) line += fmt::format(",{}", flux);
+    }
     return line;
 }
 

@@ -14,6 +14,7 @@ struct FieldBalance {
     std::string unit;   // "J", of the integral
     double integral = 0;
     double transfer_error = 0;  // [-] relative
+    std::vector<double> from_bodies = {};  // [unit/s] that left body 1, 2, ... through its surface
 };
 
 /// A row of steps.csv: an accepted step.

@@ -84,6 +84,11 @@ std::string draw_charts(const RunFiles& run, const RunSummary& summary) {
         of.chart("Remeshes", "", columns, {{"local", "local_remeshes"}, {"global", "global_remeshes"}}));
     for (const Column& column : run.steps.columns) {
         if (column.name.ends_with("_integral")) html += draw_chart(of.drift(column));
+        if (const auto from = column.name.find("_from_body_"); from != std::string::npos) {
+            const std::string field = column.name.substr(0, from), body = column.name.substr(from + 11);
+            html += draw_chart(of.chart("Flux of " + field + " out of body " + body, column.unit, lines,
+                                        {{field.c_str(), column.name.c_str()}}));
+        }
         if (column.name.ends_with("_transfer_error")) {
             const std::string field =
                 column.name.substr(0, column.name.size() - std::string("_transfer_error").size());

@@ -84,10 +84,20 @@ void check_heat(const HeatOptions& options, const Mesh& mesh);
 /// "temperature" [K], the initial value of each region; a body's at its surface.
 [[nodiscard]] NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options);
 
+/// The heat that leaves a body through its surface in a step, in the mean over the step, positive out of it.
+/// `total` * dt is, to the solver's tolerance, what the body's energy fell by, less what sources brought.
+struct SurfaceFlux {
+    Region body;
+    double total = 0;              // [W]
+    std::vector<Vertex> vertices;  // of the surface
+    std::vector<double> density;   // [W/m^2] at each of them
+};
+
 struct HeatReport {
     int iterations = 0;            // for the temperature
     double residual = 0;           // [-] |b - A T| / |b|
     int potential_iterations = 0;  // for the flow that makes way for the bodies
+    std::vector<SurfaceFlux> surfaces;  // of bodies 1, 2, ...
 };
 
 /// Takes the temperature from t [s] on `before` to t + dt on `current`: the same connectivity. At a vertex of

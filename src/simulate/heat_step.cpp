@@ -7,10 +7,12 @@
 #include "simulate/flow_potential.h"
 #include "simulate/heat_cell.h"
 #include "simulate/linear_system.h"
+#include "simulate/surface_flux.h"
 
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -157,10 +159,14 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
     const LinearSystem system = heat_system(step, cells, numbering, ranks.rank, t + dt);
     const SolverChoice choice{.name = "heat", .method = "gmres", .preconditioner = "bjacobi"};
     const Solution solution = solve(ranks, system, choice);
+    Array<Vertex, double> after = temperature.values;
     for (std::size_t r = 0; r < numbering.vertex.size(); ++r) {
-        temperature.values[numbering.vertex[r]] = solution.value[r];
+        after[numbering.vertex[r]] = solution.value[r];
     }
-    return {solution.iterations, solution.residual, flow.iterations};
+    HeatReport report{solution.iterations, solution.residual, flow.iterations,
+                      surface_fluxes(step, cells, after)};
+    temperature.values = std::move(after);
+    return report;
 }
 
 }  // namespace kropla

@@ -80,7 +80,8 @@ TEST(Run, LeavesFramesTableCheckpointAndReport) {
                                "simulate_seconds",
                                "transfer_seconds",
                                "energy_integral",
-                               "energy_transfer_error"})
+                               "energy_transfer_error",
+                               "energy_from_body_1"})
         EXPECT_EQ(numbers(steps, column).size(), 4u) << column;
     expect_floors_kept(steps, 10);
 }

@@ -67,6 +67,13 @@ TEST(StepsTable, RowsFitTheHeader) {
     EXPECT_EQ(csv_line(row), "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27");
 }
 
+TEST(StepsTable, TellsWhatLeavesEachBody) {
+    const FieldBalance two{.field = "energy", .unit = "J", .from_bodies = {0.5, -7}};
+    EXPECT_TRUE(csv_header({two}).ends_with(
+        "energy_transfer_error,energy_from_body_1 [J/s],energy_from_body_2 [J/s]"));
+    EXPECT_TRUE(csv_line({.fields = {two}}).ends_with(",0,0,0.5,-7"));
+}
+
 TEST(StepsTable, KeepsEveryBitOfANumber) {
     const std::string line = csv_line(row_of(1));
     EXPECT_NE(line.find(",0.3333333333333333,"), std::string::npos) << line;

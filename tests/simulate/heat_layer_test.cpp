@@ -160,8 +160,12 @@ TEST(HeatLayer, EnergyIsConserved) {
                      of_gas = energy(before, options, field.values, surroundings);
         for (int step = 1; step <= 5; ++step) {
             const Mesh current = position_of_step(start, motion, step);
-            step_heat(petsc().all_ranks(), before, current, options, field, 0.1 * step, 0.1);
+            const double of_body = energy(before, options, field.values, body);
+            const auto report =
+                step_heat(petsc().all_ranks(), before, current, options, field, 0.1 * step, 0.1);
             EXPECT_NEAR(energy(current, options, field.values) / begin, 1, 1e-11) << "step " << step;
+            const double lost = of_body - energy(current, options, field.values, body);
+            EXPECT_NEAR(report.surfaces.at(0).total * 0.1, lost, 1e-11 * begin) << "step " << step;
             before = current;
         }
         const double gas = energy(before, options, field.values, surroundings);
