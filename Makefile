@@ -4,9 +4,11 @@
 # make bench      builds and runs the benchmarks; beside CGAL, if libcgal-dev is installed
 # make bench-peers  the moving droplet by Kropla and by the mesh generators that are installed (Gmsh, TetGen), one
 #                 table; STEPS=10: fewer meshes of the others
+# make bench-engine  work in proportion to change, and what a second thread saves
+# make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer
 # Each installs the Debian packages that are missing.
 
-.PHONY: all demo test bench bench-peers packages configure clean
+.PHONY: all demo test bench bench-peers bench-engine endurance packages configure clean
 
 all: configure
 	cmake --build --preset release
@@ -35,6 +37,16 @@ bench-peers: packages
 	cmake --preset bench
 	cmake --build --preset bench --target kropla peers_measure peers_surfaces
 	bench/peers/bench-peers build/bench/bin build/bench/peers $(if $(STEPS),--steps $(STEPS))
+
+bench-engine: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla_engine
+	build/bench/bin/kropla_engine $(STEPS)
+
+endurance: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla_endurance
+	build/bench/bin/kropla_endurance $(STEPS)
 
 clean:
 	rm -rf build demo
