@@ -1,10 +1,11 @@
 // The Delaunay kernel on random points, uniform in a cube and graded towards its centre as around a small
 // body; beside CGAL's where that is installed. Items are tets. Each measures from the points to the finished
-// triangulation.
+// triangulation; bytes_per_tet is the most that the heap holds on the way, the given points left out.
 
 #include "generate/generate.h"
 
 #include "base/random.h"
+#include "heap.h"
 
 #include <benchmark/benchmark.h>
 
@@ -31,16 +32,28 @@ std::vector<Vec3> graded_points(std::int64_t n) {
     return points;
 }
 
+/// The tets of all repetitions, and what the heap held before the first.
+struct Made {
+    std::size_t tets = 0, heap_before = heap::bytes();
+    Made() { heap::reset_peak(); }
+};
+
+void tell(benchmark::State& state, const Made& made) {
+    state.SetItemsProcessed(static_cast<std::int64_t>(made.tets));
+    const double tets = static_cast<double>(made.tets) / static_cast<double>(state.iterations());
+    state.counters["bytes_per_tet"] = static_cast<double>(heap::peak_bytes() - made.heap_before) / tets;
+}
+
 void sizes(benchmark::internal::Benchmark* b) { b->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond); }
 
 void measure_kropla(benchmark::State& state, std::vector<Vec3> (*make)(std::int64_t)) {
     const std::vector<Vec3> points = make(state.range(0));
-    std::size_t tets = 0;
+    Made made;
     for (auto _ : state) {
         const Triangulation t = triangulate(points);
-        tets += t.tets.size();
+        made.tets += t.tets.size();
     }
-    state.SetItemsProcessed(static_cast<std::int64_t>(tets));
+    tell(state, made);
 }
 BENCHMARK_CAPTURE(measure_kropla, uniform, uniform_points)->Apply(sizes);
 BENCHMARK_CAPTURE(measure_kropla, graded, graded_points)->Apply(sizes);
@@ -50,12 +63,12 @@ void measure_cgal(benchmark::State& state, std::vector<Vec3> (*make)(std::int64_
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     std::vector<Kernel::Point_3> points;
     for (const Vec3& p : make(state.range(0))) points.emplace_back(p.x, p.y, p.z);
-    std::size_t tets = 0;
+    Made made;
     for (auto _ : state) {
         const CGAL::Delaunay_triangulation_3<Kernel> t(points.begin(), points.end());
-        tets += t.number_of_finite_cells();
+        made.tets += t.number_of_finite_cells();
     }
-    state.SetItemsProcessed(static_cast<std::int64_t>(tets));
+    tell(state, made);
 }
 BENCHMARK_CAPTURE(measure_cgal, uniform, uniform_points)->Apply(sizes);
 BENCHMARK_CAPTURE(measure_cgal, graded, graded_points)->Apply(sizes);

@@ -14,7 +14,7 @@ namespace kropla {
 
 namespace {
 
-using delaunay::ghost, delaunay::is_ghost, delaunay::Kernel, delaunay::Mark, delaunay::none, delaunay::others;
+using delaunay::Cell, delaunay::ghost, delaunay::is_ghost, delaunay::Kernel, delaunay::Mark, delaunay::none, delaunay::others;
 using std::uint32_t;
 
 /// Brings four points that are not coplanar, positively oriented, to the front of the order, the others
@@ -64,25 +64,36 @@ void start(Kernel& k) {
     k.mark.assign(k.cells.size(), Mark::unseen);
 }
 
-/// The finite cells, by the points' indices.
-Triangulation finite_part(const Kernel& k) {
-    constexpr uint32_t left_out = none;
-    std::vector<uint32_t> name(k.cells.size(), 0);
-    for (const uint32_t t : k.free_cells) name[t] = left_out;
-    uint32_t count = 0;
-    for (std::size_t t = 0; t < name.size(); ++t)
-        name[t] = name[t] == left_out || is_ghost(k.cells[t]) ? left_out : count++;
+/// The finite cells, in their order, with vertices by the points' indices; what led to a ghost leads nowhere. In place,
+/// and the kernel goes: a triangulation of many points takes the most room at its end.
+std::vector<Cell> finite_cells(Kernel k) {
+    for (const uint32_t t : k.free_cells) k.cells[t].vertex[0] = none;
+    const auto across_of = [&](uint32_t facet) -> uint32_t& { return k.cells[facet >> 2].across[facet & 3]; };
+    for (const Cell& c : k.cells)
+        if (is_ghost(c) && c.vertex[0] != none) across_of(c.across[3]) = none;
+    uint32_t to = 0;
+    for (const Cell& c : k.cells) {
+        if (c.vertex[0] == none || is_ghost(c)) continue;
+        Cell moved = c;
+        for (uint32_t& v : moved.vertex) v = static_cast<uint32_t>(k.sites[v].rank);
+        for (uint32_t i = 0; i < 4; ++i)
+            if (moved.across[i] != none) across_of(moved.across[i]) = 4 * to + i;
+        k.cells[to++] = moved;
+    }
+    k.cells.resize(to);
+    return std::move(k.cells);
+}
+
+Triangulation triangulation_of(const std::vector<Cell>& cells) {
     Triangulation result;
-    result.tets.reserve(count);
-    result.neighbour.reserve(count);
-    for (std::size_t t = 0; t < name.size(); ++t) {
-        if (name[t] == left_out) continue;
+    result.tets.reserve(cells.size());
+    result.neighbour.reserve(cells.size());
+    for (const Cell& c : cells) {
         std::array<Vertex, 4> vertices;
         std::array<Tet, 4> neighbours;
         for (std::size_t i = 0; i < 4; ++i) {
-            vertices[i] = Vertex(k.sites[k.cells[t].vertex[i]].rank);
-            const uint32_t across = name[k.cells[t].across[i] >> 2];
-            if (across != left_out) neighbours[i] = Tet(std::size_t{across});
+            vertices[i] = Vertex(std::size_t{c.vertex[i]});
+            if (c.across[i] != none) neighbours[i] = Tet(std::size_t{c.across[i] >> 2});
         }
         result.tets.push_back(vertices);
         result.neighbour.push_back(neighbours);
@@ -104,7 +115,8 @@ Triangulation triangulate_in_order(std::span<const Vec3> points, std::span<const
     k.mark.reserve(cells);
     start(k);
     for (uint32_t p = 5; p < k.sites.size(); ++p) delaunay::insert(k, p);
-    return finite_part(k);
+    const std::vector<Cell> finite = finite_cells(std::move(k));
+    return triangulation_of(finite);
 }
 
 Triangulation triangulate(std::span<const Vec3> points) {
