@@ -74,6 +74,8 @@ void describe_run(CLI::App& app, RunOptions& options) {
     run->add_option("CASE", options.case_file, "the case file (TOML; see `kropla new`)")->required();
     run->add_option("--out", options.out, "the folder that the run fills")->required()->type_name("DIR");
     run->add_flag("--resume", options.resume, "go on from the checkpoint in the folder");
+    run->add_flag("--test-rollback", options.test_rollback,
+                  "refuse every step once after it was computed and redo it; the results are the same");
     run->add_option("--threads", options.threads,
                     "threads to use (else one per processor); the results are the same")
         ->check(CLI::Range(1, 4096))

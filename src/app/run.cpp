@@ -75,8 +75,8 @@ bool at_end(const Place& place, const TimePlan& plan) {
 
 class TimeLoop {
 public:
-    TimeLoop(const Case& it, const Ranks& ranks, Place place, RunOutput& output)
-        : it_(it), ranks_(ranks), place_(std::move(place)), output_(output) {}
+    TimeLoop(const Case& it, const Ranks& ranks, Place place, RunOutput& output, bool test_rollback)
+        : it_(it), ranks_(ranks), place_(std::move(place)), output_(output), test_rollback_(test_rollback) {}
 
     /// Goes on to the end of the case. Returns false if it was interrupted.
     bool run() {
@@ -85,7 +85,8 @@ public:
             if (interrupted(ranks_)) return false;
             const auto begin = std::chrono::steady_clock::now();
             const StepReport report =
-                time_step(place_.state, it_, ranks_, step_length(place_, it_.time), least_dt_share * wanted);
+                time_step(place_.state, it_, ranks_,
+                          {step_length(place_, it_.time), least_dt_share * wanted, test_rollback_});
             ++place_.step;
             // After a step that had to be cut, one of its length, then twice it, up to the wanted one.
             place_.next_dt = report.attempts > 1 ? report.dt : std::min(wanted, 2 * place_.next_dt);
@@ -112,6 +113,7 @@ private:
     const Ranks& ranks_;
     Place place_;
     RunOutput& output_;
+    bool test_rollback_;
 };
 
 /// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint.
@@ -136,7 +138,7 @@ int run_with(const RunOptions& options, const Ranks& ranks) {
     Place place = options.resume ? resume(it, options.out) : Place{start(it), 0, wanted};
     RunOutput output(options, it, ranks.rank == 0, place.step, place.state);
     if (!options.resume) output.write_checkpoint(checkpoint_of(place, it));
-    TimeLoop loop(it, ranks, std::move(place), output);
+    TimeLoop loop(it, ranks, std::move(place), output, options.test_rollback);
     const int code = run_to_end(loop, output);
     if (ranks.rank == 0) write_report(options.out);
     return code;

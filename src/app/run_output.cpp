@@ -17,7 +17,10 @@ std::string frame_name(std::int64_t step) { return fmt::format("frames/{:05}.vtu
 
 std::vector<FieldBalance> conserved(const Case& it) {
     if (!it.heat) return {};
-    return {{.field = "energy", .unit = "J", .from_bodies = std::vector<double>(it.domain.bodies.size())}};
+    return {{.field = "energy",
+             .unit = "J",
+             .value_unit = "K",
+             .from_bodies = std::vector<double>(it.domain.bodies.size())}};
 }
 
 /// The highest rung of the repair ladder that was climbed.
@@ -86,11 +89,15 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
     row.mesh_cpu_seconds = report.mesh_cpu_seconds;
     row.simulate_seconds = report.simulate_seconds;
     row.transfer_seconds = report.transfer_seconds;
+    row.transferred_fraction = report.transferred_fraction;
     row.fields = conserved(it_);
     for (FieldBalance& field : row.fields) {
         field.integral = report.energy;
         field.transfer_error = report.energy != 0 ? report.energy_by_transfer / std::abs(report.energy) : 0;
         field.from_bodies = report.heat_from_bodies;
+        field.before_transfer = report.energy_before_transfer;
+        field.limited = report.transfer.limited;
+        field.beyond = report.transfer.beyond;
     }
     table_->append(row);
 }

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "mesh/quality.h"
-#include "transfer/transfer.h"
 
 #include <fmt/format.h>
 
@@ -39,26 +38,42 @@ double energy_in(const Case& it, const Mesh& mesh, const std::vector<NodalField>
     return it.heat ? energy(mesh, *it.heat, fields.front().values) : 0;
 }
 
+/// The heat capacity of each region per volume [J/(m^3 K)]: its integral with the temperature is what is kept.
+std::vector<double> capacities(const Case& it) {
+    std::vector<double> capacity;
+    if (it.heat)
+        for (const HeatRegion& region : it.heat->regions)
+            capacity.push_back(region.material.density * region.material.specific_heat);
+    return capacity;
+}
+
 void carry_fields(std::vector<NodalField>& fields, const Mesh& before, const Mesh& after,
-                  std::span<const Vertex> changed, const Case& it, StepReport& report) {
-    const Stopwatch watch(report.transfer_seconds);
+                  const Changes& changes, const Case& it, StepReport& report) {
     if (fields.empty()) return;
-    report.energy_by_transfer -= energy_in(it, before, fields);
-    const auto plan = interpolations(before, after, changed);
-    for (NodalField& field : fields) field.values = carry(field.values, after, plan);
-    report.energy_by_transfer += energy_in(it, after, fields);
+    report.energy_before_transfer = energy_in(it, before, fields);
+    {
+        const Stopwatch watch(report.transfer_seconds);
+        const TransferPlan plan = plan_transfer(before, after, changes.cells, changes.vertices);
+        const std::vector<double> weight = capacities(it);
+        for (NodalField& field : fields) report.transfer += project(plan, field.values, {.weight = weight});
+        report.transferred_fraction =
+            std::max(report.transferred_fraction, static_cast<double>(plan.cells) / count_tets(after));
+    }
+    report.energy = energy_in(it, after, fields);
+    report.energy_by_transfer += report.energy - report.energy_before_transfer;
 }
 
 /// Stages 2.1 to 2.4: the current mesh and the fields on its beginning; the reference is not touched.
 void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, const Case& it,
              StepReport& report) {
-    std::span<const Vertex> changed;
+    const Changes* refined = nullptr;
     {
         const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
-        moving.begin_step();                   // 2.1
-        changed = moving.refine().vertices;    // 2.2
+        moving.begin_step();           // 2.1
+        refined = &moving.refine();    // 2.2
     }
-    if (!changed.empty()) carry_fields(fields, moving.reference(), moving.before(), changed, it, report);
+    if (!refined->cells.empty() || !refined->vertices.empty())
+        carry_fields(fields, moving.reference(), moving.before(), *refined, it, report);
     const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
     moving.move_boundary(t);                   // 2.3
     moving.optimise();                         // 2.4
@@ -71,20 +86,20 @@ void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const C
     if (!it.heat) return;
     const HeatReport heat =
         step_heat(ranks, moving.before(), moving.current(), *it.heat, fields.front(), moving.time(), dt);
+    report.heat_from_bodies.clear();
     for (const SurfaceFlux& flux : heat.surfaces) report.heat_from_bodies.push_back(flux.total);
 }
 
 /// Stage 2.6.
 void accept(State& state, std::vector<NodalField> fields, const Case& it, StepReport& report) {
     MovingMesh& moving = state.moving;
-    std::span<const Vertex> changed;
+    const Changes* remeshed = nullptr;
     {
         const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
-        changed = moving.accept().vertices;
+        remeshed = &moving.accept();
     }
-    carry_fields(fields, moving.before(), moving.reference(), changed, it, report);
+    carry_fields(fields, moving.before(), moving.reference(), *remeshed, it, report);
     state.fields = std::move(fields);
-    report.energy = energy_in(it, moving.reference(), state.fields);
 }
 
 Changes all_changes(const StepStatistics& s) {
@@ -113,23 +128,32 @@ void report_changes(const MovingMesh& moving, StepReport& report) {
 
 }  // namespace
 
-StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt, double least_dt) {
+StepReport time_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
     MovingMesh& moving = state.moving;
+    double dt = options.dt;
+    bool to_roll_back = options.test_rollback;
     const double start = moving.time();
     StepReport report;
     for (report.attempts = 1;; ++report.attempts) {
         std::vector<NodalField> fields = state.fields;
-        report.energy_by_transfer = 0;
+        report.energy_by_transfer = report.transferred_fraction = 0;
+        report.transfer = {};
         prepare(moving, fields, start + dt, it, report);
         if (const auto refusal = moving.refusal()) {
             moving.refuse();
             report.refused = refusal->why;
             if (report.attempts > 1) dt /= 2;
-            if (dt >= least_dt) continue;
+            if (dt >= options.least_dt) continue;
             throw FloorError(fmt::format("at t = {:.6g} s the mesh cannot go on, even by {:.2g} s: {}", start,
                                          2 * dt, refusal->why));
         }
         simulate(moving, fields, it, ranks, dt, report);
+        if (to_roll_back) {
+            moving.refuse();
+            to_roll_back = false;
+            --report.attempts;
+            continue;
+        }
         accept(state, std::move(fields), it, report);
         break;
     }

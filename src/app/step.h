@@ -3,6 +3,7 @@
 #include "adapt/moving_mesh.h"
 #include "app/case.h"
 #include "simulate/heat.h"
+#include "transfer/transfer.h"
 
 #include <vector>
 
@@ -24,16 +25,25 @@ struct StepReport {
     double mesh_seconds = 0, simulate_seconds = 0, transfer_seconds = 0;  // all attempts
     double mesh_cpu_seconds = 0;              // of all threads
     double energy = 0;              // [J] after the step
-    double energy_by_transfer = 0;  // [J] of it, that carrying the solution added
+    double energy_before_transfer = 0;  // [J] before the last transfer of the step
+    double energy_by_transfer = 0;      // [J] that the transfers of the step added
+    TransferReport transfer;            // of all fields and transfers of the step
+    double transferred_fraction = 0;    // [-] of the cells, that took part in the largest of them
     std::vector<double> heat_from_bodies = {};  // [W] through the surface of body 1, 2, ...
     std::string refused;               // why the last refused attempt was, if one was
 };
 
-/// Takes the state one step on, by `dt` [s] or as much of it as can be done: an attempt that is refused is
-/// tried again with the mesh remeshed where it got stuck, then with half the way. On any exception the state
-/// is as it was.
+struct StepOptions {
+    double dt;                   // [s] wanted
+    double least_dt;             // [s] below, the floors count as unreachable
+    bool test_rollback = false;  // refuse the step once after it was computed, and do it again: the same to the bit
+};
+
+/// Takes the state one step on, by `dt` or as much of it as can be done: an attempt that is refused is tried
+/// again with the mesh remeshed where it got stuck, then with half the way. On any exception the state is as
+/// it was.
 /// Throws FloorError if the way left is below `least_dt`, SolverError if the solver does not converge.
-[[nodiscard]] StepReport time_step(State& state, const Case& it, const Ranks& ranks, double dt,
-                                   double least_dt);
+[[nodiscard]] StepReport time_step(State& state, const Case& it, const Ranks& ranks,
+                                   const StepOptions& options);
 
 }  // namespace kropla

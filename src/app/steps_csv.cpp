@@ -17,7 +17,7 @@ constexpr std::string_view columns =
     "[deg],"
     "max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,largest_ring,global_remeshes,"
     "touched_fraction,kept_vertices,kept_tets,mesh_seconds [s],simulate_seconds [s],transfer_seconds [s],"
-    "mesh_cpu_seconds [s]";
+    "mesh_cpu_seconds [s],transferred_fraction";
 
 /// The step of a row; 0 if it has none.
 int step_of(const std::string& line) {
@@ -53,7 +53,9 @@ std::string kept(const std::filesystem::path& file, const std::string& header, i
 std::string csv_header(const std::vector<FieldBalance>& fields) {
     std::string header(columns);
     for (const FieldBalance& f : fields) {
-        header += fmt::format(",{0}_integral [{1}],{0}_transfer_error", f.field, f.unit);
+        header += fmt::format(",{0}_integral [{1}],{0}_transfer_error,{0}_before_transfer [{1}],"
+                              "{0}_limited [{2}],{0}_beyond_bounds [{2}]",
+                              f.field, f.unit, f.value_unit);
         for (std::size_t body = 1; body <= f.from_bodies.size(); ++body)
             header += fmt::format(",{}_from_body_{} [{}/s]", f.field, body, f.unit);
     }
@@ -62,13 +64,14 @@ std::string csv_header(const std::vector<FieldBalance>& fields) {
 
 std::string csv_line(const StepRow& r) {
     std::string line = fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.step, r.time, r.dt, r.attempts,
-        r.vertices, r.tets, r.prisms, r.max_aspect_ratio, r.p999_aspect_ratio, r.min_dihedral, r.max_dihedral,
-        r.smoothing_sweeps, r.swaps, r.splits, r.collapses, r.local_remeshes, r.largest_ring,
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.step, r.time, r.dt,
+        r.attempts, r.vertices, r.tets, r.prisms, r.max_aspect_ratio, r.p999_aspect_ratio, r.min_dihedral,
+        r.max_dihedral, r.smoothing_sweeps, r.swaps, r.splits, r.collapses, r.local_remeshes, r.largest_ring,
         r.global_remeshes, r.touched_fraction, r.kept_vertices, r.kept_tets, r.mesh_seconds, r.simulate_seconds,
-        r.transfer_seconds, r.mesh_cpu_seconds);
+        r.transfer_seconds, r.mesh_cpu_seconds, r.transferred_fraction);
     for (const FieldBalance& f : r.fields) {
-        line += fmt::format(",{},{}", f.integral, f.transfer_error);
+        line += fmt::format(",{},{},{},{},{}", f.integral, f.transfer_error, f.before_transfer, f.limited,
+                            f.beyond);
         for (const double flux : f.from_bodies) line += fmt::format(",{}", flux);
     }
     return line;

@@ -8,12 +8,17 @@
 
 namespace kropla {
 
-/// What one field conserves: its integral over the box and how far the transfer missed it.
+/// What one field conserves: its integral over the box, how far the transfer missed it, and what became of its
+/// values.
 struct FieldBalance {
-    std::string field;  // "energy"
-    std::string unit;   // "J", of the integral
+    std::string field;       // "energy"
+    std::string unit;        // "J", of the integral
+    std::string value_unit;  // "K", of the values that are carried
     double integral = 0;
-    double transfer_error = 0;  // [-] relative
+    double transfer_error = 0;   // [-] relative
+    double before_transfer = 0;  // the integral, before the last transfer of the step
+    double limited = 0;          // the most that the limiter moved a value
+    double beyond = 0;           // the most that a value is beyond the old ones around it
     std::vector<double> from_bodies = {};  // [unit/s] that left body 1, 2, ... through its surface
 };
 
@@ -33,6 +38,7 @@ struct StepRow {
     double kept_vertices = 0, kept_tets = 0;                              // [-] of those there are now
     double mesh_seconds = 0, simulate_seconds = 0, transfer_seconds = 0;  // [s]
     double mesh_cpu_seconds = 0;                                          // [s] of all threads
+    double transferred_fraction = 0;                                      // [-] of the cells
     std::vector<FieldBalance> fields;  // the same ones, in the same order, in each row of a run
 };
 

@@ -70,6 +70,9 @@ std::string draw_charts(const RunFiles& run, const RunSummary& summary) {
     aspect.limit = summary.floor;
     std::string html = draw_chart(aspect);
     html += draw_chart(of.chart("Cells touched", "%", columns, {{"touched", "touched_fraction"}}, 100));
+    if (has_column(run.steps, "transferred_fraction"))
+        html += draw_chart(
+            of.chart("Cells in the transfer", "%", columns, {{"in the transfer", "transferred_fraction"}}, 100));
     html += draw_chart(of.chart(
         "Time per step", "s", columns,
         {{"mesh", "mesh_seconds"}, {"simulation", "simulate_seconds"}, {"transfer", "transfer_seconds"}}));
@@ -94,6 +97,10 @@ std::string draw_charts(const RunFiles& run, const RunSummary& summary) {
                 column.name.substr(0, column.name.size() - std::string("_transfer_error").size());
             html += draw_chart(of.chart("Error of the transfer of " + field, "relative", lines,
                                         {{field.c_str(), column.name.c_str()}}));
+        }
+        if (column.name.ends_with("_limited")) {
+            html += draw_chart(of.chart("Largest value moved by the limiter", column.unit, columns,
+                                        {{"moved", column.name.c_str()}}));
         }
     }
     return "<section><h2>Over time</h2><div class=\"charts\">" + html + "</div></section>";

@@ -11,6 +11,9 @@ namespace {
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 double largest(const std::vector<double>& values) { return *std::ranges::max_element(values); }
+double largest_size(const std::vector<double>& values) {
+    return std::abs(*std::ranges::max_element(values, {}, [](double x) { return std::abs(x); }));
+}
 double least(const std::vector<double>& values) { return *std::ranges::min_element(values); }
 
 double median(std::vector<double> values) {
@@ -59,6 +62,8 @@ void add_balances(const Table& steps, Figures& rows) {
         rows.emplace_back("Integral of " + field, readable(values.back(), 6) + " " + column.unit +
                                                       ", drift " + readable(drift, 2) +
                                                       (first != 0 ? " of the first" : ""));
+        if (const std::string error = field + "_transfer_error"; has_column(steps, error))
+            rows.emplace_back("Largest error of a transfer of " + field, readable(largest_size(numbers(steps, error)), 2));
     }
 }
 

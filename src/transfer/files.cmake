@@ -1,4 +1,12 @@
 list(APPEND KROPLA_MESH_FILES
     transfer/locate.cpp
-    transfer/carry.cpp
+    transfer/changed.cpp
+    transfer/clip.cpp
+    transfer/overlap.cpp
+    transfer/cluster.cpp
+    transfer/mass.cpp
+    transfer/limit.cpp
+    transfer/plan.cpp
+    transfer/project.cpp
+    transfer/project_cells.cpp
 )

@@ -53,7 +53,7 @@ std::vector<Vertex> spoil(Mesh& mesh, Region region, int count, std::uint64_t se
     std::vector<Vertex> spoilt;
     for (int tries = 0; tries < 10000 && static_cast<int>(spoilt.size()) < count; ++tries) {
         const Vertex v(std::size_t(random.below(mesh.position.size())));
-        if (!alive(mesh, v)) continue;
+        if (!mesh.tet_at[v].exists()) continue;
         const auto around = ball(mesh, v);
         if (mesh.region[around.front()] != region || !constraint(mesh, v, around).free()) continue;
         const auto [a, b, c] = facet_vertices(mesh, link(mesh, v)[random.below(around.size())]);

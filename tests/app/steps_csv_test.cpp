@@ -9,14 +9,14 @@
 namespace kropla {
 namespace {
 
-const std::vector<FieldBalance> energy = {{.field = "energy", .unit = "J"}};
+const std::vector<FieldBalance> energy = {{.field = "energy", .unit = "J", .value_unit = "K"}};
 
 StepRow row_of(int step) {
     StepRow row;
     row.step = step;
     row.time = step / 3.0;
     row.tets = 1000 + step;
-    row.fields = {{"energy", "J", 0.1 + 0.2, 1e-17}};
+    row.fields = {{.field = "energy", .unit = "J", .value_unit = "K", .integral = 0.1 + 0.2, .transfer_error = 1e-17}};
     return row;
 }
 
@@ -31,7 +31,9 @@ TEST(StepsTable, HasNamesAndUnits) {
               "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,"
               "min_dihedral [deg],max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,"
               "largest_ring,global_remeshes,touched_fraction,kept_vertices,kept_tets,mesh_seconds [s],"
-              "simulate_seconds [s],transfer_seconds [s],mesh_cpu_seconds [s],energy_integral [J],energy_transfer_error");
+              "simulate_seconds [s],transfer_seconds [s],mesh_cpu_seconds [s],transferred_fraction,"
+              "energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited [K],"
+              "energy_beyond_bounds [K]");
 }
 
 TEST(StepsTable, RowsFitTheHeader) {
@@ -63,15 +65,17 @@ TEST(StepsTable, RowsFitTheHeader) {
                          .simulate_seconds = 23,
                          .transfer_seconds = 24,
                          .mesh_cpu_seconds = 25,
-                         .fields = {{"energy", "J", 26, 27}}};
-    EXPECT_EQ(csv_line(row), "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27");
+                         .transferred_fraction = 26,
+                         .fields = {{"energy", "J", "K", 27, 28, 29, 30, 31}}};
+    EXPECT_EQ(csv_line(row),
+              "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31");
 }
 
 TEST(StepsTable, TellsWhatLeavesEachBody) {
-    const FieldBalance two{.field = "energy", .unit = "J", .from_bodies = {0.5, -7}};
+    const FieldBalance two{.field = "energy", .unit = "J", .value_unit = "K", .from_bodies = {0.5, -7}};
     EXPECT_TRUE(csv_header({two}).ends_with(
-        "energy_transfer_error,energy_from_body_1 [J/s],energy_from_body_2 [J/s]"));
-    EXPECT_TRUE(csv_line({.fields = {two}}).ends_with(",0,0,0.5,-7"));
+        "energy_beyond_bounds [K],energy_from_body_1 [J/s],energy_from_body_2 [J/s]"));
+    EXPECT_TRUE(csv_line({.fields = {two}}).ends_with(",0,0,0,0,0,0.5,-7"));
 }
 
 TEST(StepsTable, KeepsEveryBitOfANumber) {

@@ -16,13 +16,16 @@ std::string steps_of(const TinyRun& run) {
         "max_dihedral "
         "[deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,largest_ring,global_remeshes,"
         "touched_fraction,mesh_seconds [s],simulate_seconds [s],transfer_seconds [s]";
-    if (run.heat) text += ",energy_integral [J],energy_transfer_error";
+    if (run.heat)
+        text +=
+            ",transferred_fraction,energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited "
+            "[K],energy_beyond_bounds [K]";
     text += '\n';
     for (int step = 1; step <= run.rows; ++step) {
         text += std::to_string(step) + "," + std::to_string(step * 0.1) + ",0.1," + (step == 2 ? "3" : "1") +
                 ",637,2592,0," + (step == 3 ? std::to_string(run.worst) : "6.5") +
                 ",6.25,12,140,2,30,4,3,1,2,0,0.125,0.25,0.5,0.01";
-        if (run.heat) text += "," + std::to_string(100 + step) + ",1e-15";
+        if (run.heat) text += ",0.1," + std::to_string(100 + step) + ",1e-15," + std::to_string(100 + step) + ",3,0";
         text += '\n';
     }
     return text;

@@ -1,0 +1,81 @@
+// A limiter for projections, by redistribution:
+//   [Farrell, Piggott, Pain, Gorman, Wilson 2009] Conservative interpolation between unstructured meshes via supermesh
+//     construction. CMAME 198: bounded by spreading the excess of lumped mass to neighbours with room.
+// Changed: an excess goes out in proportion to room times mass, so that one pass takes all there is room for; what is
+// left goes to the whole block, where one pass again is enough if a solution exists at all.
+
+#include "transfer/limit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+constexpr std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+class Spreading {
+public:
+    Spreading(const MassBlock& block, const ValueBounds& bounds, std::vector<double>& x)
+        : block_(block), bounds_(bounds), x_(x) {}
+
+    /// How far `i` is from its bound in the direction of `excess`, signed as it.
+    [[nodiscard]] double room(std::size_t i, double excess) const {
+        return excess > 0 ? std::max(0.0, bounds_.most[i] - x_[i]) : std::min(0.0, bounds_.least[i] - x_[i]);
+    }
+
+    /// Gives `excess` of the integral to the vertices, as far as they have room. Returns what is left of it.
+    double give(double excess, std::span<const std::size_t> to) {
+        double capacity = 0;
+        for (std::size_t i : to) capacity += block_.mass[i] * room(i, excess);
+        if (capacity == 0) return excess;
+        const double share = std::min(1.0, excess / capacity);
+        for (std::size_t i : to) x_[i] += share * room(i, excess);
+        return share < 1 ? 0 : excess - capacity;
+    }
+
+private:
+    const MassBlock& block_;
+    const ValueBounds& bounds_;
+    std::vector<double>& x_;
+};
+
+std::vector<std::size_t> neighbours(const MassBlock& block, const CellsAtFree& cells, std::size_t i) {
+    std::vector<std::size_t> found;
+    for (std::int32_t c : cells.of(i))
+        for (std::int32_t u : block.cells[at(c)].unknown)
+            if (u >= 0 && at(u) != i) found.push_back(at(u));
+    std::ranges::sort(found);
+    const auto repeated = std::ranges::unique(found);
+    found.erase(repeated.begin(), repeated.end());
+    return found;
+}
+
+}  // namespace
+
+Limited limit(const MassBlock& block, const ValueBounds& bounds, std::vector<double>& x) {
+    const std::vector<double> unlimited = x;
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (x[i] < bounds.least[i] || x[i] > bounds.most[i]) out.push_back(i);
+    if (out.empty()) return {};
+    std::vector<double> excess;
+    for (std::size_t i : out) {
+        x[i] = std::clamp(x[i], bounds.least[i], bounds.most[i]);
+        excess.push_back(block.mass[i] * (unlimited[i] - x[i]));
+    }
+    Spreading spreading(block, bounds, x);
+    const CellsAtFree cells = cells_at_free(block);
+    Limited result;
+    for (std::size_t k = 0; k < out.size(); ++k)
+        result.left += spreading.give(excess[k], neighbours(block, cells, out[k]));
+    if (result.left != 0) {
+        std::vector<std::size_t> all(x.size());
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+        result.left = spreading.give(result.left, all);
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) result.moved = std::max(result.moved, std::abs(x[i] - unlimited[i]));
+    return result;
+}
+
+}  // namespace kropla
