@@ -2,6 +2,7 @@
 
 #include "app/distribution.h"
 #include "app/hanging.h"
+#include "app/shell_jump.h"
 #include "base/error.h"
 #include "base/tetrahedron.h"
 #include "io/vtk.h"
@@ -151,6 +152,21 @@ std::string layers(const Mesh& mesh) {
     return text;
 }
 
+/// How well cells fit where the prisms end.
+std::string jumps(const Mesh& mesh) {
+    std::string text;
+    for (std::size_t l = 0; l < mesh.layers.size(); ++l) {
+        const std::vector<double> sorted = shell_jumps(mesh, Layer(l));
+        if (sorted.empty()) continue;
+        if (text.empty())
+            text = "\nfirst tets against the last prisms: ratio of the cube roots of their volumes\n"
+                   "body region     median    largest\n";
+        text += fmt::format("{:>4} {:>6} {:>10.3f} {:>10.3f}\n", mesh.layers[l].body.value,
+                            mesh.layers[l].region.value, sorted[sorted.size() / 2], sorted.back());
+    }
+    return text;
+}
+
 std::string table(const char* title, const Samples& samples, std::vector<double> Sample::* values) {
     std::string text = fmt::format("\n{}\n{:>6} {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", title, "region",
                                    "min", "mean", "median", "99 %", "99.9 %", "max");
@@ -199,7 +215,7 @@ CheckReport check_file(const std::filesystem::path& path) {
     const std::string fault = first_fault(mesh);
     const Samples samples = samples_of(mesh);
     std::string text = fmt::format("{}: {}\n", path.string(), fault.empty() ? "valid" : "invalid") +
-                       wrapped(fault) + counts(mesh) + volumes(samples) + layers(mesh) +
+                       wrapped(fault) + counts(mesh) + volumes(samples) + layers(mesh) + jumps(mesh) +
                        table("aspect ratio R/r (3 is perfect)", samples, &Sample::aspect) +
                        table("dihedral angles [deg]", samples, &Sample::dihedral) + histograms(samples) +
                        worst_cell(mesh, samples.back().second);

@@ -4,12 +4,15 @@
 #include "../io/layered.h"
 #include "app/distribution.h"
 #include "app/hanging.h"
+#include "app/initial_mesh.h"
+#include "app/shell_jump.h"
 #include "base/error.h"
 #include "io/vtk.h"
 #include "mesh/quality.h"
 #include "mesh/verify.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <numeric>
@@ -90,6 +93,39 @@ TEST(Check, PrismsAreCountedAndEveryLayerIsSummedUp) {
                                              l.value, 3 - l.value, s.prisms, s.min_jacobian, s.min_first_height * 1e6,
                                              s.max_first_height * 1e6, s.min_thickness * 1e6,
                                              s.max_thickness * 1e6)));
+    }
+}
+
+TEST(Check, FirstTetsAreMeasuredAgainstTheLastPrisms) {
+    const Mesh mesh = layered_cube(4, {3, 2});
+    const CheckReport report = check(mesh);
+    for (const Layer l : {Layer(0), Layer(1)}) {
+        const PrismLayer& layer = layer_of(mesh, l);
+        const std::vector<double> jumps = shell_jumps(mesh, l);
+        ASSERT_EQ(jumps.size(), layer.triangles.size());
+        EXPECT_TRUE(std::ranges::is_sorted(jumps));
+        // The product over the shell is the tets' volumes by the prisms', however they are paired.
+        double product = 0, volumes = 0;
+        for (double jump : jumps) product += 3 * std::log(jump);
+        for (int triangle = 0; triangle < static_cast<int>(layer.triangles.size()); ++triangle)
+            volumes -= std::log(prism_volume(prism_corners(mesh, {l, triangle, layer.count - 1})));
+        for (Tet t : mesh.tets.indices())
+            for (Patch patch : mesh.patch[t])
+                if (patch == shell_patch(l)) volumes += std::log(volume(mesh, t));
+        EXPECT_NEAR(product, volumes, 1e-9);
+        EXPECT_TRUE(says(report, fmt::format("1 {} {:.3f} {:.3f} ", l.value, jumps[jumps.size() / 2], jumps.back())))
+            << report.text;
+    }
+}
+
+// Also where the layer ends in thin prisms: the walls are finer there.
+TEST(Check, FirstTetsAreAtMostTwiceAsLargeAsTheLastPrisms) {
+    for (const double first_height : {4e-5, 2e-5, 5e-6}) {
+        Case it;
+        it.domain.box = {{-0.002, -0.002, -0.002}, {0.002, 0.002, 0.002}};
+        it.domain.bodies = {{.name = "drop", .shape = {{}, {1e-3, 7e-4, 7e-4}, {}}}};
+        it.domain.bodies[0].layer = {.first_height = first_height};
+        EXPECT_LT(shell_jumps(initial_mesh(it), Layer(0)).back(), 2) << first_height;
     }
 }
 
