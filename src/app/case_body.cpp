@@ -101,38 +101,39 @@ Motion read_motion(const CaseTable& table, WrittenBody& written) {
     };
 }
 
-/// The largest growth, to three digits, at which the layer is no thicker than `most` [m].
-double largest_growth(LayerOptions layer, double most) {
-    double will_do = 0, too_much = layer.growth;
-    for (int halving = 0; halving < 60; ++halving) {
-        layer.growth = (will_do + too_much) / 2;
-        (thickness(layer) <= most ? will_do : too_much) = layer.growth;
-    }
-    const double digit = std::pow(10.0, std::floor(std::log10(will_do)) - 2);
-    return std::floor(will_do / digit) * digit;
+/// To three digits, rounded down: what is advised shall really do.
+double rounded_down(double value) {
+    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+    return std::floor(value / digit) * digit;
 }
 
-/// Throws if the layer is thicker than the box, as when its heights overflow. What is too thick for its place is
-/// found when the domain is meshed.
-void check_thickness(const CaseTable& table, const LayerOptions& layer, const Box& box) {
-    const Vec3 span = box.max - box.min;
+/// Throws if the layer of a body has no height, or is thicker than the box, as when its heights overflow;
+/// says what would fit. What is too thick for its place is found when the domain is meshed.
+void check_heights(const CaseTable& table, const Domain& domain, std::size_t body) {
+    const LayerOptions& layer = *domain.bodies[body].layer;
+    const double room = room_for_layer(domain, body, 0);
+    const std::string fits =
+        room > 0 ? fmt::format("; the largest layer that fits is {:.3g} m thick", rounded_down(room)) : "";
+    if (!(layer.first_height > 0))
+        table.refuse("first_height", fmt::format("must be positive, got {}{}", layer.first_height, fits));
+    const Vec3 span = domain.box.max - domain.box.min;
     const double most = std::max({span.x, span.y, span.z});
     if (thickness(layer) <= most) return;
     if (layer.first_height >= most)
-        table.refuse("first_height", fmt::format("must be below the size of the box, {} m, got {}", most,
-                                                 layer.first_height));
-    table.refuse("growth", fmt::format("{} makes a layer of {} prisms {:.3g} m thick, more than the box; at most "
-                                       "{:.3g} would do",
-                                       layer.growth, layer.count, thickness(layer),
-                                       largest_growth(layer, most)));
+        table.refuse("first_height", fmt::format("must be below the size of the box, {} m, got {}{}", most,
+                                                 layer.first_height, fits));
+    const double growth = fitting_growth(layer, room);
+    const std::string advice = growth > 0 ? fmt::format(": at most {:.3g} would do", rounded_down(growth)) : "";
+    table.refuse("growth", fmt::format("{} makes a layer of {} prisms {:.3g} m thick, more than the box{}{}",
+                                       layer.growth, layer.count, thickness(layer), fits, advice));
 }
 
-LayerOptions read_layer(const CaseTable& table, const Box& box) {
+LayerOptions read_layer(const CaseTable& table) {
     constexpr int most_prisms = 100;  // in a column; far beyond what resolves a boundary layer
     table.allow({"count", "first_height", "growth", "side", "min_gap"});
     LayerOptions layer;
     if (table.has("count")) layer.count = static_cast<int>(table.integer("count", 1, most_prisms));
-    if (table.has("first_height")) layer.first_height = table.positive("first_height");
+    if (table.has("first_height")) layer.first_height = table.number("first_height");
     if (table.has("growth")) layer.growth = table.positive("growth");
     if (table.has("min_gap")) layer.min_gap = table.positive("min_gap");
     if (table.has("side")) {
@@ -140,7 +141,6 @@ LayerOptions read_layer(const CaseTable& table, const Box& box) {
         if (side == side_names.end()) table.refuse_value("side", "must be \"outside\", \"inside\" or \"both\"");
         layer.side = static_cast<LayerOptions::Side>(side - side_names.begin());
     }
-    check_thickness(table, layer, box);
     return layer;
 }
 
@@ -152,10 +152,13 @@ void read_bodies(const CaseTable& file, Case& it) {
         WrittenBody written;
         Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
         if (table.has("motion")) body.motion = read_motion(table.table("motion"), written);
-        if (table.has("layer")) body.layer = read_layer(table.table("layer"), it.domain.box);
+        if (table.has("layer")) body.layer = read_layer(table.table("layer"));
         it.domain.bodies.push_back(std::move(body));
         it.written_bodies.push_back(std::move(written));
     }
+    const auto tables = file.tables("body");
+    for (std::size_t body = 0; body < tables.size(); ++body)
+        if (it.domain.bodies[body].layer) check_heights(tables[body].table("layer"), it.domain, body);
 }
 
 }  // namespace kropla

@@ -17,6 +17,21 @@ double size_at(const SizeField& size, double distance) {
     return std::min(size.far, size.surface + size.growth * distance);
 }
 
+/// The size field of a body: its surface may be finer than others'.
+SizeField size_of(const Snapshot& at, std::size_t body) {
+    return {surface_size(at, body), at.size.growth, at.size.far};
+}
+
+/// The target size at `x`, no closer to a body than `cell`.
+double coarse_size(const Snapshot& at, const Vec3& x, double cell) {
+    double least = at.size.far;
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        const double distance = std::abs(signed_distance(at.shapes[body], x));
+        least = std::min(least, size_at(size_of(at, body), std::max(cell, distance)));
+    }
+    return least;
+}
+
 double per_volume(double edge) { return 6 * std::numbers::sqrt2 / (edge * edge * edge); }
 
 /// The area of an ellipsoid, to 1 percent (Knud Thomsen's formula, p = 1.6075).
@@ -53,14 +68,16 @@ double estimate_tets(const Domain& domain) {
             for (int k = 0; k < nz; ++k) {
                 const Vec3 x = at.box.min + Vec3{(i + 0.5) / nx * span.x, (j + 0.5) / ny * span.y,
                                                  (k + 0.5) / nz * span.z};
-                sum += per_volume(size_at(at.size, std::max(cell, std::abs(distance_to_bodies(at, x)))));
+                sum += per_volume(coarse_size(at, x, cell));
             }
         }
     }
     double tets = sum * span.x * span.y * span.z / (static_cast<double>(nx) * ny * nz);
-    for (const Shape& body : at.shapes) {
+    for (std::size_t i = 0; i < at.shapes.size(); ++i) {
+        const Shape& body = at.shapes[i];
+        const SizeField size = size_of(at, i);
         const double inside = std::min({cell, body.semi_axes.x, body.semi_axes.y, body.semi_axes.z});
-        tets += area(body) * (excess(at.size, cell) + excess(at.size, inside)) * per_volume(1);
+        tets += area(body) * (excess(size, cell) + excess(size, inside)) * per_volume(1);
     }
     return tets;
 }

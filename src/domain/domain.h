@@ -93,6 +93,13 @@ struct Snapshot {
 /// `least_gap` surface sizes), or the surface size is too coarse for a body's curvature.
 void check_placement(const Domain& domain, double t, double least_gap);
 
+/// The thickness [m] of the largest layer that is not squeezed anywhere, at time t: a third of the least gap
+/// to a wall or another body, less between layers; inside, half of the least radius of curvature. The body
+/// has a layer.
+[[nodiscard]] double room_for_layer(const Domain& domain, std::size_t body, double t);
+/// The largest growth at which the layer is no thicker than `room` [m]; 0 if there is none.
+[[nodiscard]] double fitting_growth(LayerOptions layer, double room);
+
 /// Throws DomainError if a body's layer is of no height or overflows, or if at time t it is thicker, as
 /// asked, than the gap to a wall or to another body with its layer, or than the body's curvature allows
 /// inside, or a gap is below `least_gap(layer)`; says which body, the gap, and the largest thickness, first

@@ -8,11 +8,14 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 namespace kropla {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string written(double value, const char* unit = " m") {
     char text[40];
@@ -26,24 +29,13 @@ std::string rounded_down(double value, const char* unit = " m") {
     return written(std::floor(value / digit) * digit, unit);
 }
 
-/// The largest growth at which the layer is no thicker than `room` [m]; 0 if there is none of at least 1.
-double fitting_growth(LayerOptions layer, double room) {
-    if (layer.count * layer.first_height > room) return 0;
-    double fits = 1, too_much = layer.growth;
-    for (int i = 0; i < 60; ++i) {
-        layer.growth = (fits + too_much) / 2;
-        (thickness(layer) <= room ? fits : too_much) = layer.growth;
-    }
-    return fits;
-}
-
 /// "; the largest layer that fits is 3.3e-05 m thick: layer.first_height of at most 5.3e-06 m, or ..."
 std::string advice(const LayerOptions& layer, double room) {
     std::string text = "; the largest layer that fits is " + rounded_down(room) + " thick";
     const double height = layer.first_height * (room / thickness(layer)),
-                 growth = fitting_growth(layer, room);
+                 growth = fitting_growth(layer, room);  // below 1 it is no advice
     if (height > 0) text += ", by layer.first_height of at most " + rounded_down(height);
-    if (layer.count > 1 && growth > 0)
+    if (layer.count > 1 && growth >= 1)
         text += (height > 0 ? " or" : ", by") + std::string(" layer.growth of at most ") +
                 rounded_down(growth, "");
     return text;
@@ -95,6 +87,14 @@ void check_values(const Body& body, double widest) {
                           advice(layer, widest));
 }
 
+/// The room of a layer outside, and of one inside, as the body stands.
+double outer_room(const Domain& domain, const Snapshot& at, std::size_t body) {
+    double room = at.box.max.x - at.box.min.x;
+    for (const Nearby& n : nearby(domain, at, body)) room = std::min(room, n.room);
+    return room;
+}
+double inner_room(const Shape& shape) { return share_inside * least_curvature_radius(shape); }
+
 void check_outside(const Domain& domain, const Snapshot& at, std::size_t body) {
     const LayerOptions& layer = *at.layers[body];
     for (const Nearby& n : nearby(domain, at, body)) {
@@ -104,17 +104,9 @@ void check_outside(const Domain& domain, const Snapshot& at, std::size_t body) {
                               " is below layer.min_gap = " + written(least_gap(layer)));
         if (n.both > n.gap)
             throw DomainError(its_layer(domain.bodies[body]) + " is " + written(thickness(layer)) +
-                              " thick, too much for " + gap + advice(layer, n.room));
+                              " thick, too much for " + gap + advice(layer, outer_room(domain, at, body)));
     }
 }
-
-/// The room of a layer outside, and of one inside, as the body stands.
-double outer_room(const Domain& domain, const Snapshot& at, std::size_t body) {
-    double room = at.box.max.x - at.box.min.x;
-    for (const Nearby& n : nearby(domain, at, body)) room = std::min(room, n.room);
-    return room;
-}
-double inner_room(const Shape& shape) { return share_inside * least_curvature_radius(shape); }
 
 void check_inside(const Body& body, const Shape& shape) {
     if (thickness(*body.layer) <= least_curvature_radius(shape)) return;
@@ -125,16 +117,31 @@ void check_inside(const Body& body, const Shape& shape) {
 
 }  // namespace
 
+double fitting_growth(LayerOptions layer, double room) {
+    if (!(layer.first_height > 0) || layer.first_height > room) return 0;
+    // The last prism alone is below the room.
+    double fits = 0, too_much = std::pow(room / layer.first_height, 1.0 / std::max(1, layer.count - 1));
+    for (int i = 0; i < 60; ++i) {
+        layer.growth = (fits + too_much) / 2;
+        (thickness(layer) <= room ? fits : too_much) = layer.growth;
+    }
+    return fits;
+}
+
+double room_for_layer(const Domain& domain, std::size_t body, double t) {
+    const Snapshot at = snapshot(domain, t);
+    const LayerOptions& layer = *at.layers.at(body);
+    const double inner = has_inside(layer) ? inner_room(at.shapes[body]) : infinity;
+    return has_outside(layer) ? std::min(inner, outer_room(domain, at, body)) : inner;
+}
+
 void check_layers(const Domain& domain, double t) {
     const Snapshot at = snapshot(domain, t);
     int layers = 0;
     for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
         const Body& b = domain.bodies[body];
         if (!b.layer) continue;
-        double widest = has_inside(*b.layer) ? inner_room(at.shapes[body]) : outer_room(domain, at, body);
-        if (b.layer->side == LayerOptions::Side::both)
-            widest = std::min(widest, outer_room(domain, at, body));
-        check_values(b, widest);
+        check_values(b, room_for_layer(domain, body, t));
         if (has_outside(*b.layer)) check_outside(domain, at, body);
         if (has_inside(*b.layer)) check_inside(b, at.shapes[body]);
         layers += has_outside(*b.layer) + has_inside(*b.layer);

@@ -66,7 +66,8 @@ TEST(LayerInCase, IsWrittenAsItIsRun) {
 TEST(LayerInCase, WrongValuesAreRefused) {
     const auto layer = [](const std::string& line) { return refusal("[body.layer]\n" + line + "\n"); };
     const std::string place = "case.toml: body[1].layer.";
-    EXPECT_EQ(layer("first_height = -2e-5"), place + "first_height (line 19): must be positive, got -2e-05");
+    const std::string fits = "; the largest layer that fits is 0.000766 m thick";  // a third of 2.3 mm
+    EXPECT_EQ(layer("first_height = -2e-5"), place + "first_height (line 19): must be positive, got -2e-05" + fits);
     EXPECT_EQ(layer("count = 0"), place + "count (line 19): must be a whole number from 1 to 100, got 0");
     EXPECT_EQ(layer("count = 101"), place + "count (line 19): must be a whole number from 1 to 100, got 101");
     EXPECT_EQ(layer("growth = 0"), place + "growth (line 19): must be positive, got 0");
@@ -83,17 +84,19 @@ TEST(LayerInCase, AGrowthThatOverflowsIsRefusedWithTheLargestThatWouldDo) {
     const std::string infinite = refusal("[body.layer]\ncount = 4\ngrowth = 1e300\n");
     EXPECT_EQ(infinite.substr(0, infinite.find(" at most")),
               "case.toml: body[1].layer.growth (line 20): 1e+300 makes a layer of 4 prisms inf m thick, more than the "
-              "box;");
+              "box; the largest layer that fits is 0.000766 m thick:");
+    // sum of 2e-5 g^k, k = 0 ... 3, below 0.766 mm
+    EXPECT_NEAR(std::stod(infinite.substr(infinite.find("at most ") + 8)), 2.95, 0.01);
     const std::string large = refusal("[body.layer]\ncount = 100\ngrowth = 1.5\n");
     const double advised = std::stod(large.substr(large.find("at most ") + 8));
     SCOPED_TRACE(large);
-    const auto growing = [](double growth) {
-        return refusal("[body.layer]\ncount = 100\ngrowth = " + std::to_string(growth) + "\n");
-    };
-    EXPECT_EQ(growing(advised), "");
-    EXPECT_NE(growing(1.01 * advised), "");
+    const double room = (3.3e-3 - 1e-3) / 3;  // a third of the gap to the nearest face
+    EXPECT_LE(thickness({.count = 100, .growth = advised}), room);
+    EXPECT_GT(thickness({.count = 100, .growth = 1.01 * advised}), room);
+    EXPECT_EQ(refusal("[body.layer]\ncount = 100\ngrowth = " + std::to_string(advised) + "\n"), "");
     EXPECT_EQ(refusal("[body.layer]\nfirst_height = 1\n"),
-              "case.toml: body[1].layer.first_height (line 19): must be below the size of the box, 0.016 m, got 1");
+              "case.toml: body[1].layer.first_height (line 19): must be below the size of the box, 0.016 m, "
+              "got 1; the largest layer that fits is 0.000766 m thick");
 }
 
 TEST(RotationInCase, TurnsTheBodyAboutItsCentre) {

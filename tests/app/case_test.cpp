@@ -192,5 +192,18 @@ TEST(Estimate, SeesSizesFinerThanItsGrid) {
     }
 }
 
+// A layer that ends in thin prisms makes its wall finer: as if that size had been asked for.
+TEST(Estimate, SeesWallsThatTheirLayerMakesFiner) {
+    Domain domain{.box = {{-1, -1, -1}, {1, 1, 1}},
+                  .bodies = {{"b", {{0, 0, 0}, {0.2, 0.2, 0.2}, {}}}},
+                  .size = {.surface = 0.05, .growth = 0.5, .far = 10}};
+    domain.bodies[0].layer = LayerOptions{.count = 1, .first_height = 1e-3};
+    const double fine = surface_size(snapshot(domain, 0), 0), seen = estimate_tets(domain);
+    ASSERT_LT(fine, 0.02);
+    domain.bodies[0].layer.reset();
+    domain.size.surface = fine;
+    EXPECT_NEAR(seen, estimate_tets(domain), 1e-9 * seen);
+}
+
 }  // namespace
 }  // namespace kropla

@@ -183,7 +183,7 @@ TEST(LayeredMesh, RefusesLayersTooThickAndSaysWhatFits) {
     EXPECT_EQ(error_of(domain), "");
     domain.bodies[1].layer = LayerOptions{3, 0.15, 1.25, Side::outside, {}};
     expect_error(domain, {"too much for the gap of 0.7 m to body \"1\"",
-                          "thick, by layer.first_height of at most 0.04"});
+                          "fits is 0.1 m thick, by layer.first_height of at most 0.026 m"});  // at the wall, too
 }
 
 TEST(LayeredMesh, TheLargestLayerThatFitsDoes) {
