@@ -5,10 +5,11 @@
 # make bench-peers  the moving droplet by Kropla and by the mesh generators that are installed (Gmsh, TetGen), one
 #                 table; STEPS=10: fewer meshes of the others
 # make bench-engine  work in proportion to change, and what a second thread saves
+# make bench-strategies  the same motion by ours and by three plainer ways, one table
 # make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer
 # Each installs the Debian packages that are missing.
 
-.PHONY: all demo test bench bench-peers bench-engine endurance packages configure clean
+.PHONY: all demo test bench bench-peers bench-engine bench-strategies endurance packages configure clean
 
 all: configure
 	cmake --build --preset release
@@ -42,6 +43,11 @@ bench-engine: packages
 	cmake --preset bench
 	cmake --build --preset bench --target kropla_engine
 	build/bench/bin/kropla_engine $(STEPS)
+
+bench-strategies: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla_strategies
+	build/bench/bin/kropla_strategies $(STEPS)
 
 endurance: packages
 	cmake --preset bench
