@@ -14,7 +14,8 @@
 namespace kropla {
 namespace {
 
-/// Adds the time from its construction to its end to a sum: of the wall's clock and, if asked for, of the processor.
+/// Adds the time from its construction to its end to a sum: of the wall's clock and, if asked for, of the
+/// processor.
 class Stopwatch {
 public:
     explicit Stopwatch(double& seconds, double* cpu_seconds = nullptr)
@@ -38,7 +39,8 @@ double energy_in(const Case& it, const Mesh& mesh, const std::vector<NodalField>
     return it.heat ? energy(mesh, *it.heat, fields.front().values) : 0;
 }
 
-/// The heat capacity of each region per volume [J/(m^3 K)]: its integral with the temperature is what is kept.
+/// The heat capacity of each region per volume [J/(m^3 K)]: its integral with the temperature is what is
+/// kept.
 std::vector<double> capacities(const Case& it) {
     std::vector<double> capacity;
     if (it.heat)

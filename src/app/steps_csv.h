@@ -8,8 +8,8 @@
 
 namespace kropla {
 
-/// What one field conserves: its integral over the box, how far the transfer missed it, and what became of its
-/// values.
+/// What one field conserves: its integral over the box, how far the transfer missed it, and what became of
+/// its values.
 struct FieldBalance {
     std::string field;       // "energy"
     std::string unit;        // "J", of the integral

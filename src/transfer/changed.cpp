@@ -1,5 +1,6 @@
-// A flood over the cells that differ, in both meshes at once. Across a facet to a cell that is the same in both, the
-// facet is one of the other mesh too: the cell beyond it there differs, or the facet would not be where the flood ends.
+// A flood over the cells that differ, in both meshes at once. Across a facet to a cell that is the same in
+// both, the facet is one of the other mesh too: the cell beyond it there differs, or the facet would not be
+// where the flood ends.
 
 #include "transfer/changed.h"
 

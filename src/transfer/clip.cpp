@@ -1,9 +1,10 @@
 // Clipping of a tet by planes, and the integrals over what is left.
-//   [Powell, Abel 2015] An exact general remeshing scheme applied to physically conservative voxelization. J. Comput.
-//     Phys. 297: a polyhedron as a graph of vertices with three neighbours each; cutting it by inserting vertices on
-//     the edges that cross the plane and linking each to the next around its face.
-// Changed: it works in the barycentric coordinates of the tet, so that shares and moments need no scale, and all
-// integrals come from tets that start at one vertex of the part: they are sums of positive terms.
+//   [Powell, Abel 2015] An exact general remeshing scheme applied to physically conservative voxelization. J.
+//   Comput.
+//     Phys. 297: a polyhedron as a graph of vertices with three neighbours each; cutting it by inserting
+//     vertices on the edges that cross the plane and linking each to the next around its face.
+// Changed: it works in the barycentric coordinates of the tet, so that shares and moments need no scale, and
+// all integrals come from tets that start at one vertex of the part: they are sums of positive terms.
 
 #include "transfer/clip.h"
 
@@ -26,14 +27,14 @@ Place crossing(const Place& a, double inside, const Place& b, double outside) {
     return x;
 }
 
-/// The next step of a way around a face, with the inside on its left.
+/// A step of a way around a face: from a vertex along one of its edges.
 struct Step {
-    int from, to;
+    int from, edge;
 };
-Step next_around_face(const TetPart& part, Step s) {
-    const auto& next = part.next[at(s.to)];
-    const int back = place_in(next, s.from);
-    return {s.to, next[at(back == 2 ? 0 : back + 1)]};
+constexpr int end_of(const TetPart& part, Step s) { return part.next[at(s.from)][at(s.edge)]; }
+constexpr Step next_around_face(const TetPart& part, Step s) {
+    const int to = end_of(part, s), back = place_in(part.next[at(to)], s.from);
+    return {to, back == 2 ? 0 : back + 1};
 }
 
 /// Puts a vertex on each edge that leaves the inside; it knows the edge's inner end alone.
@@ -55,7 +56,7 @@ void add_crossings(TetPart& part, const std::array<double, TetPart::most_vertice
 /// Links the vertices from `first_fresh` on along the edges of the new face.
 void close_face(TetPart& part, int first_fresh) {
     for (int v = first_fresh; v < part.count; ++v) {
-        Step s{v, part.next[at(v)][0]};
+        Step s{v, 0};
         do s = next_around_face(part, s);
         while (s.from < first_fresh);
         part.next[at(v)][2] = static_cast<std::int8_t>(s.from);
@@ -77,42 +78,49 @@ void drop_outside(TetPart& part, const std::array<double, TetPart::most_vertices
         for (auto& end : part.next[at(v)]) end = renumbered[at(end)];
 }
 
-/// Sums over tets of positive volume: of 1, of the coordinates, of their products, each with its factor left out.
+/// Sums over tets with a corner at the origin: of 1, of the coordinates, of their products, each with its factor
+/// left out.
 struct Sums {
     double volume = 0;
     Place first{};
     std::array<double, 6> second{};  // 11, 12, 13, 22, 23, 33
 
-    void add(const Place& a, const Place& b, const Place& c, const Place& d) {
-        const Place u = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v = {c[0] - a[0], c[1] - a[1], c[2] - a[2]},
-                    w = {d[0] - a[0], d[1] - a[1], d[2] - a[2]};
-        const double det = u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-                           u[2] * (v[0] * w[1] - v[1] * w[0]);
+    void add(const Place& b, const Place& c, const Place& d) {
+        const double det = b[0] * (c[1] * d[2] - c[2] * d[1]) + b[1] * (c[2] * d[0] - c[0] * d[2]) +
+                           b[2] * (c[0] * d[1] - c[1] * d[0]);
         volume += det;
-        Place sum;
-        for (std::size_t k = 0; k < 3; ++k) {
-            sum[k] = a[k] + b[k] + c[k] + d[k];
-            first[k] += det * sum[k];
-        }
+        const Place sum = {b[0] + c[0] + d[0], b[1] + c[1] + d[1], b[2] + c[2] + d[2]};
+        for (std::size_t k = 0; k < 3; ++k) first[k] += det * sum[k];
         std::size_t n = 0;
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = i; j < 3; ++j)
-                second[n++] +=
-                    det * (sum[i] * sum[j] + (a[i] * a[j] + b[i] * b[j]) + (c[i] * c[j] + d[i] * d[j]));
+                second[n++] += det * ((sum[i] * sum[j] + b[i] * b[j]) + (c[i] * c[j] + d[i] * d[j]));
     }
 };
 
+/// With their factors, and the origin moved to where it is seen from the tet's corner 0.
+Sums finished(const Sums& s, const Place& origin) {
+    Sums moved{s.volume, {}, {}};
+    const Place first = {s.first[0] / 4, s.first[1] / 4, s.first[2] / 4};
+    for (std::size_t k = 0; k < 3; ++k) moved.first[k] = first[k] + s.volume * origin[k];
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j, ++n)
+            moved.second[n] = s.second[n] / 20 + (origin[i] * first[j] + origin[j] * first[i]) +
+                              s.volume * origin[i] * origin[j];
+    return moved;
+}
+
 /// The same for all four coordinates.
 TetMoments with_corner_0(const Sums& s) {
-    const double q11 = s.second[0] / 20, q12 = s.second[1] / 20, q13 = s.second[2] / 20, q22 = s.second[3] / 20,
-                 q23 = s.second[4] / 20, q33 = s.second[5] / 20;
-    const double q01 = s.first[0] / 4 - (q11 + q12 + q13), q02 = s.first[1] / 4 - (q12 + q22 + q23),
-                 q03 = s.first[2] / 4 - (q13 + q23 + q33);
-    const double mean0 = s.volume - (s.first[0] + s.first[1] + s.first[2]) / 4;
-    return {{{mean0 - (q01 + q02 + q03), q01, q02, q03},
-             {q01, q11, q12, q13},
-             {q02, q12, q22, q23},
-             {q03, q13, q23, q33}}};
+    const auto& q = s.second;
+    const double q01 = s.first[0] - (q[0] + q[1] + q[2]), q02 = s.first[1] - (q[1] + q[3] + q[4]),
+                 q03 = s.first[2] - (q[2] + q[4] + q[5]);
+    const double mean = s.volume - (s.first[0] + s.first[1] + s.first[2]);
+    return {{{mean - (q01 + q02 + q03), q01, q02, q03},
+             {q01, q[0], q[1], q[2]},
+             {q02, q[1], q[3], q[4]},
+             {q03, q[2], q[4], q[5]}}};
 }
 
 }  // namespace
@@ -154,25 +162,33 @@ bool cut(TetPart& part, const std::array<double, 4>& at_corners) {
 }
 
 TetMoments moments(const TetPart& part) {
-    std::array<std::array<bool, 3>, TetPart::most_vertices> done{};
-    for (int e = 0; e < 3 && part.count > 0; ++e)  // faces at vertex 0: their tets are flat
-        for (Step s{0, part.next[0][at(e)]};;) {
-            done[at(s.from)][at(place_in(part.next[at(s.from)], s.to))] = true;
-            s = next_around_face(part, s);
-            if (s.from == 0) break;
-        }
-    Sums sums;
+    if (part.count == 0) return {};
+    const Place origin = part.place[0];
+    std::array<Place, TetPart::most_vertices> place;
     for (int v = 0; v < part.count; ++v)
+        for (std::size_t k = 0; k < 3; ++k) place[at(v)][k] = part.place[at(v)][k] - origin[k];
+    std::array<std::uint8_t, TetPart::most_vertices> done{};  // per vertex, a bit per edge of it
+    const auto walk_on = [&](Step s) {
+        done[at(s.from)] = static_cast<std::uint8_t>(done[at(s.from)] | 1u << s.edge);
+        return next_around_face(part, s);
+    };
+    for (int e = 0; e < 3; ++e) {  // the faces at vertex 0: their tets are flat
+        Step s{0, e};
+        do s = walk_on(s);
+        while (s.from != 0);
+    }
+    Sums sums;
+    for (int v = 1; v < part.count; ++v)
         for (int e = 0; e < 3; ++e) {
-            if (done[at(v)][at(e)]) continue;
-            Step s = next_around_face(part, {v, part.next[at(v)][at(e)]});
-            for (; s.to != v; s = next_around_face(part, s)) {
-                done[at(s.from)][at(place_in(part.next[at(s.from)], s.to))] = true;
-                sums.add(part.place[0], part.place[at(v)], part.place[at(s.to)], part.place[at(s.from)]);
+            if (done[at(v)] >> e & 1u) continue;
+            Step s = walk_on({v, e});
+            for (int to = end_of(part, s); to != v; to = end_of(part, s)) {
+                sums.add(place[at(v)], place[at(to)], place[at(s.from)]);
+                s = walk_on(s);
             }
-            done[at(s.from)][at(place_in(part.next[at(s.from)], v))] = true;
+            walk_on(s);
         }
-    return with_corner_0(sums);
+    return with_corner_0(finished(sums, origin));
 }
 
 }  // namespace kropla

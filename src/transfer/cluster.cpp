@@ -36,7 +36,8 @@ Clusters::Clusters(const Mesh& after, const ChangedCells& changed, const Overlap
         owner_.assign(seed.value, number);
         for (std::size_t i = 0; i < cells.size(); ++i)
             for (Tet n : after.neighbour[cells[i]]) {
-                if (!n.exists() || owner_.find(n.value) != not_yet || after.region[n] != after.region[seed]) continue;
+                if (!n.exists() || owner_.find(n.value) != not_yet || after.region[n] != after.region[seed])
+                    continue;
                 owner_.assign(n.value, number);
                 cells.push_back(n);
             }
@@ -45,7 +46,7 @@ Clusters::Clusters(const Mesh& after, const ChangedCells& changed, const Overlap
     }
     gone_.resize(cells_.size());
     has_free_.assign(cells_.size(), false);
-    std::vector<std::pair<double, std::int32_t>> most(changed.gone.size(), {0, -1});  // share, and of whose cluster
+    std::vector<std::pair<double, std::int32_t>> most(changed.gone.size(), {0, -1});  // share, cluster
     for (std::size_t i = 0; i < changed.come.size(); ++i)
         for (const CellShare& share : overlaps.cell(i)) {
             auto& [largest, cluster] = most[static_cast<std::size_t>(share.gone)];
@@ -64,8 +65,9 @@ SlotMap held_vertices(const Mesh& after, const Clusters& clusters, std::size_t c
     for (Tet t : cells)
         for (int corner = 0; corner < 4; ++corner) {
             const Tet n = after.neighbour[t][static_cast<std::size_t>(corner)];
-            const bool ends = n.exists() ? clusters.cluster_of(n) != static_cast<std::int32_t>(cluster)
-                                         : after.patch[t][static_cast<std::size_t>(corner)].value >= box_faces;
+            const bool ends = n.exists()
+                                  ? clusters.cluster_of(n) != static_cast<std::int32_t>(cluster)
+                                  : after.patch[t][static_cast<std::size_t>(corner)].value >= box_faces;
             if (!ends) continue;
             for (Vertex v : facet_vertices(after, {t, corner})) held.insert(v.value, 0);
         }
@@ -76,9 +78,8 @@ bool Clusters::has_free_vertex(const Mesh& after, std::size_t cluster) {
     if (has_free_[cluster]) return true;
     const SlotMap held = held_vertices(after, *this, cluster);
     has_free_[cluster] = std::ranges::any_of(cells_[cluster], [&](Tet t) {
-        return std::ranges::any_of(after.tets[t], [&](Vertex v) {
-            return !held.contains(v.value) && !after.layer_at[v].exists();
-        });
+        return std::ranges::any_of(
+            after.tets[t], [&](Vertex v) { return !held.contains(v.value) && !after.layer_at[v].exists(); });
     });
     return has_free_[cluster];
 }
@@ -86,14 +87,30 @@ bool Clusters::has_free_vertex(const Mesh& after, std::size_t cluster) {
 bool Clusters::grow(const Mesh& after, std::size_t cluster) {
     const std::size_t size = cells_[cluster].size();
     std::vector<Tet> tets;
+    std::vector<Vertex> shared;
     for (Vertex v : rim_vertices(after, *this, cluster)) {
         if (after.layer_at[v].exists()) continue;
         ball(after, v, tets);
         const Region region = after.region[tets.front()];
         if (!std::ranges::all_of(tets, [&](Tet t) { return after.region[t] == region; })) continue;
+        if (!is_alone(tets, cluster))
+            shared.push_back(v);
+        else
+            for (Tet t : tets) claim(t, cluster);
+    }
+    if (cells_[cluster].size() > size) return true;
+    for (Vertex v : shared) {
+        ball(after, v, tets);
         for (Tet t : tets) claim(t, now(cluster));
     }
     return cells_[now(cluster)].size() > size;
+}
+
+bool Clusters::is_alone(std::span<const Tet> ball, std::size_t cluster) const {
+    return std::ranges::all_of(ball, [&](Tet t) {
+        const std::int32_t of = cluster_of(t);
+        return of < 0 || of == static_cast<std::int32_t>(cluster);
+    });
 }
 
 void Clusters::claim(Tet t, std::size_t cluster) {

@@ -8,8 +8,8 @@
 
 namespace kropla {
 
-/// Connected groups of changed cells, each within one region: what is projected at once. A cluster may grow by cells
-/// that did not change, so that more of its vertices are free; clusters that meet become one.
+/// Connected groups of changed cells, each within one region: what is projected at once. A cluster may grow
+/// by cells that did not change, so that more of its vertices are free; clusters that meet become one.
 class Clusters {
 public:
     Clusters() = default;
@@ -17,7 +17,9 @@ public:
 
     /// Numbers of clusters go from 0 to count() - 1; one that was taken in by another has no cells any more.
     [[nodiscard]] std::size_t count() const { return cells_.size(); }
-    [[nodiscard]] std::int32_t cluster_of(Tet t) const { return t.exists() ? owner(owner_.find(t.value)) : -1; }
+    [[nodiscard]] std::int32_t cluster_of(Tet t) const {
+        return t.exists() ? owner(owner_.find(t.value)) : -1;
+    }
     [[nodiscard]] std::span<const Tet> cells(std::size_t cluster) const { return cells_[cluster]; }
     /// The old cells that fill the place of its changed ones, by their places in ChangedCells::gone.
     [[nodiscard]] std::span<const std::int32_t> gone(std::size_t cluster) const { return gone_[cluster]; }
@@ -29,8 +31,9 @@ public:
     /// Whether it has a vertex whose ball is all in it and that no interface or layer holds.
     [[nodiscard]] bool has_free_vertex(const Mesh& after, std::size_t cluster);
 
-    /// Takes in the balls of all vertices at its rim that no interface or layer holds. Returns whether that added any
-    /// cell. It may be another cluster's from then on: see `now`.
+    /// Takes in the balls of the vertices at its rim that no interface or layer holds: of those that no other
+    /// cluster shares; if there are none, of all. Returns whether that added any cell. It may be another
+    /// cluster's from then on: see `now`.
     bool grow(const Mesh& after, std::size_t cluster);
 
 private:
@@ -39,6 +42,7 @@ private:
             cluster = taken_by_[static_cast<std::size_t>(cluster)];
         return cluster;
     }
+    [[nodiscard]] bool is_alone(std::span<const Tet> ball, std::size_t cluster) const;
     void claim(Tet t, std::size_t cluster);
     void unite(std::size_t a, std::size_t b);
 
@@ -49,7 +53,8 @@ private:
     std::vector<bool> has_free_;  // known to; it stays so when it grows
 };
 
-/// The vertices of the cluster that are held: as it ends there, or as they are of an interface or a layer's shell.
+/// The vertices of the cluster that are held: as it ends there, or as they are of an interface or a layer's
+/// shell.
 [[nodiscard]] SlotMap held_vertices(const Mesh& after, const Clusters& clusters, std::size_t cluster);
 
 }  // namespace kropla

@@ -1,8 +1,9 @@
 // A limiter for projections, by redistribution:
-//   [Farrell, Piggott, Pain, Gorman, Wilson 2009] Conservative interpolation between unstructured meshes via supermesh
+//   [Farrell, Piggott, Pain, Gorman, Wilson 2009] Conservative interpolation between unstructured meshes via
+//   supermesh
 //     construction. CMAME 198: bounded by spreading the excess of lumped mass to neighbours with room.
-// Changed: an excess goes out in proportion to room times mass, so that one pass takes all there is room for; what is
-// left goes to the whole block, where one pass again is enough if a solution exists at all.
+// Changed: an excess goes out in proportion to room times mass, so that one pass takes all there is room for;
+// what is left goes to the whole block, where one pass again is enough if a solution exists at all.
 
 #include "transfer/limit.h"
 
@@ -74,7 +75,8 @@ Limited limit(const MassBlock& block, const ValueBounds& bounds, std::vector<dou
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
         result.left = spreading.give(result.left, all);
     }
-    for (std::size_t i = 0; i < x.size(); ++i) result.moved = std::max(result.moved, std::abs(x[i] - unlimited[i]));
+    for (std::size_t i = 0; i < x.size(); ++i)
+        result.moved = std::max(result.moved, std::abs(x[i] - unlimited[i]));
     return result;
 }
 

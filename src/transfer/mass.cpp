@@ -1,7 +1,8 @@
 // The mass matrix of linear tets: a cell of volume V adds V/20 (1 + delta_ij).
-//   [Wathen 1987] Realistic eigenvalue bounds for the Galerkin mass matrix. IMA J. Numer. Anal. 7: scaled by its
-//     diagonal its eigenvalues lie between 1/2 and 5/2, on any mesh, so that conjugate gradients need some 30 steps
-//     to rounding, fewer for small blocks.
+//   [Wathen 1987] Realistic eigenvalue bounds for the Galerkin mass matrix. IMA J. Numer. Anal. 7: scaled by
+//   its
+//     diagonal its eigenvalues lie between 1/2 and 5/2, on any mesh, so that conjugate gradients need some 30
+//     steps to rounding, fewer for small blocks.
 
 #include "transfer/mass.h"
 
@@ -68,7 +69,8 @@ SlotMap places_of(std::span<const Tet> tets) {
 MassBlock mass_block(const Mesh& before, const Mesh& after, const ChangedCells& changed, const SlotMap& come,
                      const Clusters& clusters, std::size_t cluster) {
     MassBlock block;
-    for (Tet t : clusters.cells(cluster)) block.cells.push_back({t, come.find(t.value), volume_of(after, t), {}});
+    for (Tet t : clusters.cells(cluster))
+        block.cells.push_back({t, come.find(t.value), volume_of(after, t), {}});
     for (std::int32_t place : clusters.gone(cluster)) {
         const Tet t = changed.gone[static_cast<std::size_t>(place)];
         block.gone.push_back({before.tets[t], volume_of(before, t)});
@@ -108,7 +110,8 @@ void solve_mass(const MassBlock& block, std::span<const double> right, std::vect
     double old = 0;
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
         if (std::sqrt(product(residual, residual)) <= rounding * norm) break;
-        for (std::size_t i = 0; i < n; ++i) scaled[i] = residual[i] / block.mass[i];  // mass is the diagonal times 5/2
+        for (std::size_t i = 0; i < n; ++i)
+            scaled[i] = residual[i] / block.mass[i];  // mass is the diagonal times 5/2
         const double now = product(residual, scaled), turn = iteration == 0 ? 0 : now / old;
         for (std::size_t i = 0; i < n; ++i) direction[i] = scaled[i] + turn * direction[i];
         multiply(block, direction, image);

@@ -11,8 +11,8 @@ namespace kropla {
 /// A new cell as part of a projection.
 struct MassCell {
     Tet tet;
-    std::int32_t come;  // place in ChangedCells::come; -1: it did not change
-    double volume;      // [m^3]
+    std::int32_t come;                    // place in ChangedCells::come; -1: it did not change
+    double volume;                        // [m^3]
     std::array<std::int32_t, 4> unknown;  // place in MassBlock::free; -1: the corner's value is held
 };
 
@@ -22,9 +22,10 @@ struct OldMass {
     double volume;  // [m^3]
 };
 
-/// The unknowns of one cluster: its vertices whose ball is all in it, and that nothing holds. What is needed of the mass
-/// matrix: it acts cell by cell. `shape` is the solution w of M w = m, m_i the integral of the shape function: the
-/// direction in which a given integral is reached with the least change in the mean square.
+/// The unknowns of one cluster: its vertices whose ball is all in it, and that nothing holds. What is needed
+/// of the mass matrix: it acts cell by cell. `shape` is the solution w of M w = m, m_i the integral of the
+/// shape function: the direction in which a given integral is reached with the least change in the mean
+/// square.
 struct MassBlock {
     std::vector<MassCell> cells;
     std::vector<OldMass> gone;

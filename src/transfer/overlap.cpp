@@ -1,8 +1,10 @@
 // The supermesh of old and new cells, never kept: each part is integrated and added to sums.
-//   [Farrell, Maddison 2011] Conservative interpolation between volume meshes by local Galerkin projection. CMAME 200.
-//   [Gander, Japhet 2013] Algorithm 932: PANG. ACM TOMS 40: advancing from neighbour to neighbour in both meshes.
-// Changed: planes are those of the old mesh's facets, one per facet and seen from both sides; corners that both meshes
-// have in common lie on them exactly, as their numbers tell.
+//   [Farrell, Maddison 2011] Conservative interpolation between volume meshes by local Galerkin projection.
+//   CMAME 200.
+//   [Gander, Japhet 2013] Algorithm 932: PANG. ACM TOMS 40: advancing from neighbour to neighbour in both
+//   meshes.
+// Changed: planes are those of the old mesh's facets, one per facet and seen from both sides; corners that
+// both meshes have in common lie on them exactly, as their numbers tell.
 
 #include "transfer/overlap.h"
 
@@ -30,10 +32,10 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct OldCell {
     std::array<Vertex, 4> vertices;
-    std::array<Vec3, 4> inward;  // of the facet opposite corner i: normal, twice the area long
-    std::array<Vec3, 4> on;      // a corner of that facet
+    std::array<Vec3, 4> inward;            // of the facet opposite corner i: normal, twice the area long
+    std::array<Vec3, 4> on;                // a corner of that facet
     std::array<double, 4> inverse_height;  // by which `inward` tells the barycentric coordinate
-    std::array<std::int32_t, 4> across;    // the old cell beyond that facet; -1: none that is gone, in the region
+    std::array<std::int32_t, 4> across;    // the old cell of the region beyond that facet; -1: none is gone
     Region region;
 };
 
@@ -46,8 +48,8 @@ struct NewCell {
     Region region;
 };
 
-/// Sets the plane of the facet opposite `corner`, computed from its vertices in ascending order: the two cells at a
-/// facet get the same numbers, with opposite signs.
+/// Sets the plane of the facet opposite `corner`, computed from its vertices in ascending order: the two
+/// cells at a facet get the same numbers, with opposite signs.
 void set_plane(const Mesh& mesh, OldCell& cell, int corner) {
     std::array<Vertex, 3> v;
     for (std::size_t k = 0; k < 3; ++k) v[k] = cell.vertices[at(tet_facets[at(corner)][k])];
@@ -71,7 +73,8 @@ class OldCells {
 public:
     OldCells(const Mesh& mesh, std::span<const Tet> gone)
         : gone_(gone), index_(gone.size()), cells_(gone.size()) {
-        for (std::size_t i = 0; i < gone.size(); ++i) index_.insert(gone[i].value, static_cast<std::int32_t>(i));
+        for (std::size_t i = 0; i < gone.size(); ++i)
+            index_.insert(gone[i].value, static_cast<std::int32_t>(i));
         tbb::parallel_for(std::size_t{0}, gone.size(), [&](std::size_t i) {
             OldCell& cell = cells_[i];
             cell.vertices = mesh.tets[gone[i]];
@@ -178,8 +181,8 @@ public:
     }
 
 private:
-    /// An old cell that overlaps the new one: where a corner that both meshes have sees the new one's centre, or where
-    /// the centre is. -1 if none is found.
+    /// An old cell that overlaps the new one: where a corner that both meshes have sees the new one's centre,
+    /// or where the centre is. -1 if none is found.
     std::int32_t find(const NewCell& cell, Tet slot) {
         for (Vertex v : cell.vertices) {
             if (!v.exists()) continue;
@@ -187,7 +190,8 @@ private:
             if (found >= 0 && old_[found].region == cell.region) return last_ = found;
         }
         for (Vertex v : near(cell, slot))
-            if (const std::int32_t found = walk(old_.find(before_.tet_at[v]), cell); found >= 0) return last_ = found;
+            if (const std::int32_t found = walk(old_.find(before_.tet_at[v]), cell); found >= 0)
+                return last_ = found;
         const std::int32_t start = start_of_search(cell, slot);
         if (start < 0) return -1;
         const std::int32_t found = old_.find(locate(before_, cell.centre, old_.tet(start)).tet);
@@ -239,8 +243,8 @@ private:
         return -1;
     }
 
-    /// The tet of the ball of `v` in the old mesh through which the centre of the new cell is seen, by a walk around
-    /// `v`; none if it ends at the region's surface.
+    /// The tet of the ball of `v` in the old mesh through which the centre of the new cell is seen, by a walk
+    /// around `v`; none if it ends at the region's surface.
     [[nodiscard]] Tet seen_from(Vertex v, const NewCell& cell) const {
         Tet t = before_.tet_at[v];
         for (int step = 0; step < longest_walk && t.exists() && before_.region[t] == cell.region; ++step) {
@@ -344,7 +348,8 @@ private:
 };
 
 template <class Share>
-std::span<const Share> part_of(const std::vector<Share>& all, const std::vector<std::uint32_t>& end, std::size_t i) {
+std::span<const Share> part_of(const std::vector<Share>& all, const std::vector<std::uint32_t>& end,
+                               std::size_t i) {
     const std::size_t first = i == 0 ? 0 : end[i - 1];
     return {all.data() + first, end[i] - first};
 }

@@ -8,8 +8,8 @@
 
 namespace kropla {
 
-/// What one vertex of the old mesh gives to a new cell: the integrals over the cell of its shape function times each
-/// of the cell's four [m^3].
+/// What one vertex of the old mesh gives to a new cell: the integrals over the cell of its shape function
+/// times each of the cell's four [m^3].
 struct NodalShare {
     Vertex from;
     std::array<double, 4> weight;
@@ -32,17 +32,18 @@ struct Overlaps {
     };
     std::vector<Chunk> chunks;
     std::size_t searched = 0;  // cells for which walking was not enough
-    double worst_gap = 0;      // [-] largest distance from one of the sum of a new cell's shares, before it is scaled
+    double worst_gap = 0;      // [-] the most that a new cell's shares miss 1, before they are scaled
 
     [[nodiscard]] std::span<const NodalShare> nodal(std::size_t come) const;
     [[nodiscard]] std::span<const CellShare> cell(std::size_t come) const;
 };
 
-/// Intersects each new cell with the old ones it overlaps, within its region. The old cells are found from neighbour to
-/// neighbour, starting from where the new cell's centre is; if their parts do not add up to the new cell to 1e-12,
-/// all old cells of the region are tried. Parts that meet at a facet of the old mesh share their cut, computed from
-/// the same plane by the same operations, so that they leave no gap and do not overlap, but for the rounding of the
-/// corners of the parts. The result does not depend on the number of threads.
+/// Intersects each new cell with the old ones it overlaps, within its region. The old cells are found from
+/// neighbour to neighbour, starting from where the new cell's centre is; if their parts do not add up to the
+/// new cell to 1e-12, all old cells of the region are tried. Parts that meet at a facet of the old mesh share
+/// their cut, computed from the same plane by the same operations, so that they leave no gap and do not
+/// overlap, but for the rounding of the corners of the parts. The result does not depend on the number of
+/// threads.
 [[nodiscard]] Overlaps overlaps(const Mesh& before, const Mesh& after, const ChangedCells& changed);
 
 }  // namespace kropla

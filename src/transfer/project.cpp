@@ -1,9 +1,11 @@
 // Projection of nodal fields.
-//   [Farrell, Maddison 2011] Conservative interpolation between volume meshes by local Galerkin projection. CMAME 200.
-//   [Alauzet, Mehrenberger 2010] P1-conservative solution interpolation on unstructured triangular meshes. IJNME 84:
+//   [Farrell, Maddison 2011] Conservative interpolation between volume meshes by local Galerkin projection.
+//   CMAME 200.
+//   [Alauzet, Mehrenberger 2010] P1-conservative solution interpolation on unstructured triangular meshes.
+//   IJNME 84:
 //     bounds of the old cells that overlap.
-// Changed: it is local to what changed; values at the rim stay, and the integral is kept by a multiplier instead.
-// Values are taken relative to one of the block's own, so that a constant field stays to the bit.
+// Changed: it is local to what changed; values at the rim stay, and the integral is kept by a multiplier
+// instead. Values are taken relative to one of the block's own, so that a constant field stays to the bit.
 
 #include "transfer/limit.h"
 #include "transfer/transfer.h"
@@ -17,9 +19,9 @@
 namespace kropla {
 namespace {
 
-constexpr int most_rings = 4;           // by which a cluster grows for the sake of its bounds
-constexpr double range_slack = 1e-13;   // [-] of the range of the values: beyond the bounds by rounding
-constexpr double value_slack = 1e-15;   // [-] of the values themselves
+constexpr int most_rings = 4;          // by which a cluster grows for the sake of its bounds
+constexpr double range_slack = 1e-13;  // [-] of the range of the values: beyond the bounds by rounding
+constexpr double value_slack = 1e-15;  // [-] of the values themselves
 
 constexpr std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
@@ -70,7 +72,8 @@ struct OldOverCell {
     }
 };
 
-OldOverCell old_over_cell(const TransferPlan& plan, const MassCell& cell, const OldField& old, double origin) {
+OldOverCell old_over_cell(const TransferPlan& plan, const MassCell& cell, const OldField& old,
+                          double origin) {
     OldOverCell over;
     if (cell.come >= 0) {
         for (const NodalShare& share : plan.overlaps.nodal(at(cell.come))) {
@@ -97,7 +100,8 @@ double old_integral(const MassBlock& block, const OldField& old, double origin) 
     return sum;
 }
 
-BlockSystem block_system(const TransferPlan& plan, const MassBlock& block, const OldField& old, double origin) {
+BlockSystem block_system(const TransferPlan& plan, const MassBlock& block, const OldField& old,
+                         double origin) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     BlockSystem system;
     system.right.assign(block.free.size(), 0);
@@ -137,12 +141,14 @@ void reach_integral(const MassBlock& block, double wanted, std::vector<double>& 
 
 double excess(const ValueBounds& bounds, const std::vector<double>& x) {
     double most = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) most = std::max({most, bounds.least[i] - x[i], x[i] - bounds.most[i]});
+    for (std::size_t i = 0; i < x.size(); ++i)
+        most = std::max({most, bounds.least[i] - x[i], x[i] - bounds.most[i]});
     return most;
 }
 
 /// Into the bounds; into those of the whole block where the integral cannot be had otherwise, or beyond.
-void bring_into_bounds(const MassBlock& block, const BlockSystem& system, double slack, BlockSolution& solution) {
+void bring_into_bounds(const MassBlock& block, const BlockSystem& system, double slack,
+                       BlockSolution& solution) {
     const std::vector<double> unlimited = solution.value;
     Limited limited = limit(block, system.bounds, solution.value);
     const double mass = integral(block, std::vector<double>(solution.value.size(), 1));
@@ -158,7 +164,8 @@ void bring_into_bounds(const MassBlock& block, const BlockSystem& system, double
     solution.beyond = excess(system.bounds, solution.value);
 }
 
-BlockSolution solve_block(const TransferPlan& plan, const MassBlock& block, const OldField& old, bool limited) {
+BlockSolution solve_block(const TransferPlan& plan, const MassBlock& block, const OldField& old,
+                          bool limited) {
     BlockSolution solution;
     if (block.free.empty()) return solution;
     solution.origin = old[block.gone.front().vertices[0]];
@@ -173,11 +180,16 @@ BlockSolution solve_block(const TransferPlan& plan, const MassBlock& block, cons
     return solution;
 }
 
-/// Blocks with their solutions, in the order of clusters; those that cannot keep their bounds are made to grow.
+/// Blocks with their solutions, in the order of clusters; those that cannot keep their bounds are made to
+/// grow.
 class Projection {
 public:
     Projection(const TransferPlan& plan, NodalData values, const ProjectOptions& options)
-        : plan_(plan), values_(values), old_(plan, values), options_(options), solutions_(plan.blocks.size()),
+        : plan_(plan),
+          values_(values),
+          old_(plan, values),
+          options_(options),
+          solutions_(plan.blocks.size()),
           grown_(plan.blocks.size()) {}
 
     TransferReport run() {
@@ -250,7 +262,8 @@ private:
         for (std::size_t c = 0; c < solutions_.size(); ++c) {
             if (gone(c)) continue;
             const BlockSolution& s = solutions_[c];
-            for (std::size_t i = 0; i < s.value.size(); ++i) values_[block(c).free[i]] = s.origin + s.value[i];
+            for (std::size_t i = 0; i < s.value.size(); ++i)
+                values_[block(c).free[i]] = s.origin + s.value[i];
         }
     }
 
@@ -281,7 +294,8 @@ TransferReport project(const TransferPlan& plan, NodalData values, const Project
     return Projection(plan, values, options).run();
 }
 
-TransferReport project(const TransferPlan& plan, Array<Vertex, double>& values, const ProjectOptions& options) {
+TransferReport project(const TransferPlan& plan, Array<Vertex, double>& values,
+                       const ProjectOptions& options) {
     values.resize(std::max(values.size(), plan.after->position.size()));
     const TransferReport report = project(plan, NodalData{values.data()}, options);
     values.resize(plan.after->position.size());

@@ -5,8 +5,8 @@
 
 namespace kropla {
 
-/// A map from the numbers of slots (vertices or tets) to numbers from 0 on, for what is known of a few slots of a large
-/// mesh. Open addressing; the size is a power of two, at most half full.
+/// A map from the numbers of slots (vertices or tets) to numbers from 0 on, for what is known of a few slots
+/// of a large mesh. Open addressing; the size is a power of two, at most half full.
 class SlotMap {
 public:
     explicit SlotMap(std::size_t expected = 16) {

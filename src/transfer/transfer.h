@@ -11,31 +11,33 @@
 
 namespace kropla {
 
-// --- Where a point is ----------------------------------------------------------------------------------------------
+// --- Where a point is --------------------------------------------------------------------------------------
 
-/// Where a point is: in a tet, at these barycentric coordinates (they sum to one; none is below -1e-9, save for a
-/// point that lies outside the region by more than rounding, which gets the nearest tet found).
+/// Where a point is: in a tet, at these barycentric coordinates (they sum to one; none is below -1e-9, save
+/// for a point that lies outside the region by more than rounding, which gets the nearest tet found).
 struct Location {
     Tet tet;
     std::array<double, 4> weights;
 };
 
-/// Finds the tet of the region of `start` that holds `x`: a walk from `start` across the facets that `x` lies beyond,
-/// as in [Devillers, Pion, Teillaud 2001], "Walking in a triangulation"; where the walk ends at the region's surface,
-/// as a region need not be convex, the search spreads from there from neighbour to neighbour.
+/// Finds the tet of the region of `start` that holds `x`: a walk from `start` across the facets that `x` lies
+/// beyond, as in [Devillers, Pion, Teillaud 2001], "Walking in a triangulation"; where the walk ends at the
+/// region's surface, as a region need not be convex, the search spreads from there from neighbour to
+/// neighbour.
 [[nodiscard]] Location locate(const Mesh& mesh, const Vec3& x, Tet start);
 
-// --- The plan: geometry, once per change of the mesh -----------------------------------------------------------------
+// --- The plan: geometry, once per change of the mesh -------------------------------------------------------
 
-/// A vertex that is new, or in a new place, but belongs to an interface or a layer: it gets the old field there.
+/// A vertex that is new, or in a new place, but belongs to an interface or a layer: it gets the old field
+/// there.
 struct GivenVertex {
     Vertex vertex;
     std::array<Vertex, 4> from;
     std::array<double, 4> weights;
 };
 
-/// How to carry any field from `before` to `after`, which are to outlive the plan: what changed, the overlaps of old and
-/// new cells, and the systems to be solved.
+/// How to carry any field from `before` to `after`, which are to outlive the plan: what changed, the overlaps
+/// of old and new cells, and the systems to be solved.
 struct TransferPlan {
     const Mesh* before = nullptr;
     const Mesh* after = nullptr;
@@ -44,22 +46,23 @@ struct TransferPlan {
     Clusters clusters;
     std::vector<MassBlock> blocks;   // per cluster; empty where another has taken it in
     std::vector<GivenVertex> given;  // ascending
-    std::size_t cells = 0;           // of the new mesh that take part: those that changed, and those around them
+    std::size_t cells = 0;  // of the new mesh that take part: those that changed, and those around them
 };
 
-/// Plans the transfer between two meshes in one slot numbering which differ in `cells` and in the balls of `vertices`
-/// (each may stand more than once, some may be gone again). The work is proportional to what differs. Regions fill the
-/// same volume in both meshes, and layers are the same.
+/// Plans the transfer between two meshes in one slot numbering which differ in `cells` and in the balls of
+/// `vertices` (each may stand more than once, some may be gone again). The work is proportional to what
+/// differs. Regions fill the same volume in both meshes, and layers are the same.
 [[nodiscard]] TransferPlan plan_transfer(const Mesh& before, const Mesh& after, std::span<const Tet> cells,
                                          std::span<const Vertex> vertices);
 
 /// The same for any two meshes of one domain: all slots are compared.
 [[nodiscard]] TransferPlan plan_transfer(const Mesh& before, const Mesh& after);
 
-// --- Fields ------------------------------------------------------------------------------------------------------
+// --- Fields ------------------------------------------------------------------------------------------------
 
-/// One number per vertex, wherever it is kept: that of vertex v is first[v.value * stride]. So a component of a vector, a
-/// time level, a member of a user's own struct is such a field. There is one for every slot of both meshes.
+/// One number per vertex, wherever it is kept: that of vertex v is first[v.value * stride]. So a component of
+/// a vector, a time level, a member of a user's own struct is such a field. There is one for every slot of
+/// both meshes.
 struct NodalData {
     double* first;
     std::size_t stride = 1;  // [doubles]
@@ -73,7 +76,7 @@ struct CellData {
 };
 
 struct ProjectOptions {
-    bool limit = true;                  // keep the bounds of the old cells that overlap
+    bool limit = true;                    // keep the bounds of the old cells that overlap
     std::span<const double> weight = {};  // per region: the density whose integral is reported; empty: 1
 };
 
@@ -82,26 +85,30 @@ struct TransferReport {
     double before = 0, after = 0;  // the integral
     double size = 0;               // that of the absolute values: what the error is relative to
     double limited = 0;            // the largest change of a value by the limiter
-    double beyond = 0;             // by how much a value exceeds its bounds, where no others keep the integral
-    int grown = 0;                 // clusters that had to take in more cells to keep their bounds
+    double beyond = 0;  // by how much a value exceeds its bounds, where no others keep the integral
+    int grown = 0;      // clusters that had to take in more cells to keep their bounds
 
     [[nodiscard]] double error() const { return size > 0 ? (after - before) / size : 0; }
     TransferReport& operator+=(const TransferReport& other);
 };
 
-/// Carries a field that is linear in every tet: on each cluster of changed cells the projection in the mean square
-/// (Galerkin) among the fields that have the old integral there, and at the rim the old values. Values of vertices
-/// that keep one unchanged cell stay, bit for bit, where a cluster need not grow: it grows by a ring of cells if it has
-/// no free vertex, or if no values within the bounds have the integral. Vertices of interfaces and layers keep their
-/// values, so that each region's integral is its own. Linear fields are kept exactly.
+/// Carries a field that is linear in every tet: on each cluster of changed cells the projection in the mean
+/// square (Galerkin) among the fields that have the old integral there, and at the rim the old values. Values
+/// of vertices that keep one unchanged cell stay, bit for bit, where a cluster need not grow: it grows by a
+/// ring of cells if it has no free vertex, or if no values within the bounds have the integral. Vertices of
+/// interfaces and layers keep their values, so that each region's integral is its own. Linear fields are kept
+/// exactly.
 TransferReport project(const TransferPlan& plan, NodalData values, const ProjectOptions& options = {});
-TransferReport project(const TransferPlan& plan, Array<Vertex, double>& values, const ProjectOptions& options = {});
+TransferReport project(const TransferPlan& plan, Array<Vertex, double>& values,
+                       const ProjectOptions& options = {});
 /// By components; the report is of all three.
-TransferReport project(const TransferPlan& plan, Array<Vertex, Vec3>& values, const ProjectOptions& options = {});
+TransferReport project(const TransferPlan& plan, Array<Vertex, Vec3>& values,
+                       const ProjectOptions& options = {});
 
-/// Carries a field that is constant in every tet: means over the old cells that overlap, which keep the integral and the
-/// bounds by themselves.
+/// Carries a field that is constant in every tet: means over the old cells that overlap, which keep the
+/// integral and the bounds by themselves.
 TransferReport project(const TransferPlan& plan, CellData values, const ProjectOptions& options = {});
-TransferReport project(const TransferPlan& plan, Array<Tet, double>& values, const ProjectOptions& options = {});
+TransferReport project(const TransferPlan& plan, Array<Tet, double>& values,
+                       const ProjectOptions& options = {});
 
 }  // namespace kropla

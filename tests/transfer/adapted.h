@@ -16,14 +16,15 @@ struct AdaptedMesh {
     Changes changes;
 };
 
-/// A sphere in a box, spoilt, repaired, brought to another size than its own, improved and relaxed, inside the body
-/// too: every way in which vertices come, move and go.
+/// A sphere in a box, spoilt, repaired, brought to another size than its own, improved and relaxed, inside
+/// the body too: every way in which vertices come, move and go.
 [[nodiscard]] AdaptedMesh adapted_mesh(std::uint64_t seed);
 
 /// The mesh with one 2-3 swap inside each region, where one is possible: no vertex changes.
 [[nodiscard]] AdaptedMesh swapped_mesh(Mesh mesh);
 
-/// The unit cube, filled by the Delaunay mesh of (n+1)^3 vertices, jittered inside, in its faces and along its edges.
+/// The unit cube, filled by the Delaunay mesh of (n+1)^3 vertices, jittered inside, in its faces and along
+/// its edges.
 [[nodiscard]] Mesh jittered_cube(int n, std::uint64_t seed);
 
 using NodalValues = Array<Vertex, double>;

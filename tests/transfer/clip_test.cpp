@@ -30,7 +30,8 @@ TEST(Clip, CutsOffACornerOfHalfTheSize) {
     EXPECT_EQ(rest.count, 6);  // a prism
     EXPECT_NEAR(share(moments(corner)), 1.0 / 8, 1e-16);
     EXPECT_NEAR(share(moments(rest)), 7.0 / 8, 1e-15);
-    // In the corner, a1 = (1 + b) / 2 with b the coordinate of a whole tet: mean of a1^2 = (1 + 2/4 + 1/10) / 4.
+    // In the corner, a1 = (1 + b) / 2 with b the coordinate of a whole tet: mean of a1^2 = (1 + 2/4 + 1/10) /
+    // 4.
     EXPECT_NEAR(moments(corner)[1][1], (1 + 0.5 + 0.1) / 4 / 8, 1e-16);
 }
 
@@ -47,9 +48,12 @@ TEST(Clip, LeavesWhatIsInsideAndNothingOfWhatIsOutside) {
 double random_value(Random& random) {
     const double value = random.uniform(-1, 1);
     switch (random.below(6)) {
-        case 0: return 0;
-        case 1: return value * 1e-17;
-        default: return value;
+        case 0:
+            return 0;
+        case 1:
+            return value * 1e-17;
+        default:
+            return value;
     }
 }
 

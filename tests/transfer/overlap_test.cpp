@@ -17,7 +17,8 @@ namespace {
 constexpr double rounding = 1e-12;
 
 /// Old cells are covered too: what the new ones take of each adds up to its volume.
-void expect_covered(const Mesh& before, const Mesh& after, const ChangedCells& changed, const Overlaps& found) {
+void expect_covered(const Mesh& before, const Mesh& after, const ChangedCells& changed,
+                    const Overlaps& found) {
     std::vector<double> taken(changed.gone.size(), 0);
     double largest = 0;
     for (std::size_t i = 0; i < changed.come.size(); ++i) {
@@ -92,7 +93,8 @@ TEST(Overlaps, CoverWhatAdaptationChanged) {
 }
 
 TEST(Overlaps, NodalWeightsAreIntegralsOfShapeFunctions) {
-    // With the old field 1, and with x: the weights give the integrals of the new shape functions, and of x times them.
+    // With the old field 1, and with x: the weights give the integrals of the new shape functions, and of x
+    // times them.
     const Mesh a = jittered_cube(4, 1), b = jittered_cube(3, 2);
     const TransferPlan plan = plan_transfer(a, b);
     for (std::size_t i = 0; i < plan.changed.come.size(); ++i) {
@@ -115,11 +117,13 @@ TEST(Overlaps, NodalWeightsAreIntegralsOfShapeFunctions) {
 TEST(Overlaps, AreTheSameBitsForAnyNumberOfThreads) {
     const Mesh a = jittered_cube(6, 1), b = jittered_cube(6, 2);
     const auto weights = [&](std::size_t threads) {
-        const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+        const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism,
+                                                  threads);
         const TransferPlan plan = plan_transfer(a, b);
         std::vector<double> all;
         for (const auto& chunk : plan.overlaps.chunks)
-            for (const NodalShare& share : chunk.nodal) all.insert(all.end(), share.weight.begin(), share.weight.end());
+            for (const NodalShare& share : chunk.nodal)
+                all.insert(all.end(), share.weight.begin(), share.weight.end());
         return all;
     };
     EXPECT_TRUE(weights(1) == weights(2));

@@ -38,7 +38,8 @@ protected:
     void expect_integrals_kept(const NodalValues& old, const NodalValues& fresh) const {
         for (Region region : {surroundings, Region(1)}) {
             const double before = field_integral(mesh.before, old, region);
-            EXPECT_NEAR(field_integral(mesh.after, fresh, region), before, 1e-12 * std::max(1.0, std::abs(before)))
+            EXPECT_NEAR(field_integral(mesh.after, fresh, region), before,
+                        1e-12 * std::max(1.0, std::abs(before)))
                 << "region " << region.value;
         }
     }
@@ -108,8 +109,8 @@ TEST_P(ProjectAfterAdaptation, ChangesNothingAwayFromTheCellsThatTakePart) {
 TEST_P(ProjectAfterAdaptation, NeverCrossesAnInterface) {
     // With the surface's own values of the body, no other value may get into it; and the same from without.
     for (Region region : {surroundings, Region(1)}) {
-        NodalValues field =
-            nodal_values(mesh.before, [&](Vertex v) { return at_region(mesh.before, v, region) ? 1.0 : 0.0; });
+        NodalValues field = nodal_values(
+            mesh.before, [&](Vertex v) { return at_region(mesh.before, v, region) ? 1.0 : 0.0; });
         (void)project(plan, field);
         for (Vertex v : all_vertices(mesh.after)) {
             if (!at_region(mesh.after, v, region)) continue;
@@ -179,7 +180,8 @@ TEST(Project, KeepsTheIntegralWhereASwapLeavesNoVertexFree) {
     (void)project(plan, fresh);
     for (Region region : {surroundings, Region(1)}) {
         const double before = field_integral(mesh.before, old, region);
-        EXPECT_GT(std::abs(field_integral(mesh.after, old, region) - before), 1e-6);  // it has to do something
+        EXPECT_GT(std::abs(field_integral(mesh.after, old, region) - before),
+                  1e-6);  // it has to do something
         EXPECT_NEAR(field_integral(mesh.after, fresh, region), before, 1e-14);
     }
 }
