@@ -6,6 +6,7 @@
 #include "mesh/topology.h"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,12 +21,16 @@ namespace kropla {
 struct Changes {
     std::vector<Vertex> vertices;
     std::vector<Tet> cells;
+    std::vector<Tet> removed;  // slots of cells that were replaced; new cells may stand in them
     int smoothing_sweeps = 0, moved = 0, swaps = 0, splits = 0, collapses = 0;
     int local_remeshes = 0, largest_ring = 0, global_remeshes = 0;
     int cells_replaced = 0, vertices_inserted = 0;
 
     Changes& operator+=(const Changes& other);
 };
+
+/// Carries a proposal out and notes it.
+void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes);
 
 // --- Smoothing (paper 1.1) ---------------------------------------------------------------------------------------
 
@@ -46,25 +51,29 @@ void smooth_laplacian(Mesh& mesh, std::span<const Vertex> vertices, const Laplac
 /// vertices that moved.
 std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights);
 
-/// One sweep that moves each vertex towards the volume-weighted barycentre of its ball, if the sum of the fourth powers
-/// of the aspect ratios of its ball falls: better cells on the whole, bad ones first. Returns those that moved.
-std::vector<Vertex> relax(Mesh& mesh, std::span<const Vertex> vertices);
-
 /// Moves `v` to where the worst aspect ratio of its ball is least, or as low as `good_enough`; slides on the faces of
 /// the box; stays on interfaces. Returns whether it moved: only if the worst ratio fell.
 bool optimise_vertex(Mesh& mesh, Vertex v, double good_enough);
 
 // --- Proposals: swapping, splitting, collapsing, inserting ------------------------------------------------------
 
+/// What a swap is to lower: the worst aspect ratio of the cells it replaces; or their energy, the sum of volume times
+/// (R/r)^4 [m^3], which does not depend on the number of cells and is ruled by the bad ones, with no cell worse than
+/// `limit` after. `worst_before` and `worst_after` of the proposal are then energies.
+struct SwapGoal {
+    bool by_energy = false;
+    double limit = std::numeric_limits<double>::infinity();  // [-] R/r
+};
+
 /// Face removal: the two tets at a facet become three around a new edge. Nothing on the boundary or an interface, or
-/// if the worst aspect ratio would not fall.
-[[nodiscard]] std::optional<Cavity> face_removal(const Mesh& mesh, Facet facet);
+/// if the goal is not served.
+[[nodiscard]] std::optional<Cavity> face_removal(const Mesh& mesh, Facet facet, SwapGoal goal = {});
 
 /// Edge removal: the shell of the edge is replaced by the best triangulation of its ring, joined to both ends; on a
 /// face of the box too, within the face. Nothing for an edge of an interface or of two patches, for a ring of more
-/// than `longest_ring` vertices, or if the worst aspect ratio would not fall.
+/// than `longest_ring` vertices, or if the goal is not served.
 inline constexpr int longest_ring = 9;
-[[nodiscard]] std::optional<Cavity> edge_removal(const Mesh& mesh, const Shell& shell, Edge edge);
+[[nodiscard]] std::optional<Cavity> edge_removal(const Mesh& mesh, const Shell& shell, Edge edge, SwapGoal goal = {});
 
 /// Pulls `from` onto `to`. Nothing if `from` is held by something that the edge does not lie on, or if the worst
 /// aspect ratio after would exceed `worst_allowed`.
@@ -119,18 +128,18 @@ Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const
 [[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells,
                                    const Array<Vertex, Vec3>& displacement, double least = 0.05);
 
+struct Zone;  // zone.h
+
 struct MoveReport {
-    bool arrived = false;          // else the mesh is as it was
-    double fraction = 0;           // of the way that is safe for all cells
-    std::vector<Tet> cells;        // of the surroundings, with a vertex that moves
-    std::vector<Vertex> vertices;  // of the surroundings, that move
-    Tet limiting;                  // the cell that stopped it, if it did not arrive
+    bool arrived = false;  // else the mesh is as it was
+    double fraction = 0;   // of the way that is safe for all cells
+    Tet limiting;          // the cell that stopped it, if it did not arrive
 };
 
 /// Moves bodies rigidly from their places at `t0` to those at `t1` [s] and spreads the displacement into the
 /// surroundings, if every cell stays valid on the way; else tells how far it could go. Connectivity is unchanged.
-/// `bodies` are, per body, the vertices of its cells.
+/// `bodies` are, per body, the vertices of its cells. `zone` becomes the surroundings that the displacement reaches.
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1);
+                         double t1, Zone& zone);
 
 }  // namespace kropla

@@ -13,7 +13,8 @@ namespace kropla {
 namespace {
 
 constexpr double least_gain = 1e-3;
-constexpr double swap_gain = 0.08;              // relative, of a swap where no cell is bad
+constexpr double worth_another_try = 1.02;      // how much worse a cell must be than when nothing helped it
+constexpr double passable_after_swap = 0.96;    // of good_enough: no swap for the energy makes a worse cell
 constexpr double longest_after_collapse = 2.0;  // [target sizes]
 constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
 
@@ -29,12 +30,12 @@ public:
         if (const double ratio = aspect_ratio(mesh_, t); ratio > above_) queue_.push({ratio, -t.value});
     }
     /// The worst cell, if one is left; entries whose cell has changed since are passed over.
-    std::optional<Tet> take() {
+    std::optional<std::pair<Tet, double>> take() {
         while (!queue_.empty()) {
             const auto [ratio, minus_name] = queue_.top();
             queue_.pop();
             const Tet t(-minus_name);
-            if (alive(mesh_, t) && aspect_ratio(mesh_, t) == ratio) return t;
+            if (alive(mesh_, t) && aspect_ratio(mesh_, t) == ratio) return std::pair(t, ratio);
         }
         return std::nullopt;
     }
@@ -50,36 +51,40 @@ struct Improvement {
     Mesh& mesh;
     const Snapshot& at_time;
     const AdaptOptions& options;
-    BadCells& bad;
-    Changes changes;
+    BadCells bad;
+    Array<Tet, float>& stuck_at;
+    Shell around = {};  // room for questions
+    Changes changes = {};
 
     void carry_out(const Cavity& cavity) {
-        changes.cells_replaced += static_cast<int>(cavity.removed.size());
-        changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
-        for (std::size_t k = 0; k < cavity.inserted.size(); ++k)
-            changes.vertices.push_back(next_vertex(mesh, k));
-        for (Tet t : replace_cells(mesh, cavity)) {
-            changes.cells.push_back(t);
-            bad.add(t);
+        const std::size_t known = changes.cells.size();
+        kropla::carry_out(mesh, cavity, changes);
+        if (stuck_at.size() < mesh.tets.size()) stuck_at.resize(mesh.tets.size() + mesh.tets.size() / 4);
+        for (std::size_t i = known; i < changes.cells.size(); ++i) {
+            stuck_at[changes.cells[i]] = 0;
+            bad.add(changes.cells[i]);
         }
     }
 };
 
 void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
-    if (other && (!best || other->worst_after < best->worst_after)) best = std::move(other);
+    if (!other) return;
+    const auto gain = [](const Cavity& c) { return c.worst_before - c.worst_after; };
+    if (!best || gain(*other) > gain(*best)) best = std::move(other);
 }
 
-bool swap_at(Improvement& work, Tet t) {
+bool swap_at(Improvement& work, Tet t, double ratio) {
     const Mesh& mesh = work.mesh;
-    const double ratio = aspect_ratio(mesh, t);
+    const bool bad = ratio > work.options.good_enough;
+    const SwapGoal goal = bad ? SwapGoal{} : SwapGoal{true, passable_after_swap * work.options.good_enough};
     std::optional<Cavity> best;
-    for (int i = 0; i < 4; ++i) keep_better(best, face_removal(mesh, {t, i}));
+    for (int i = 0; i < 4; ++i) keep_better(best, face_removal(mesh, {t, i}, goal));
     for (const auto& [i, j] : tet_edges) {
         const Edge e{mesh.tets[t][at(i)], mesh.tets[t][at(j)]};
-        keep_better(best, edge_removal(mesh, shell(mesh, e, t), e));
+        shell(mesh, e, t, work.around);
+        keep_better(best, edge_removal(mesh, work.around, e, goal));
     }
-    const bool bad = ratio > work.options.good_enough;
-    if (!best || (!bad && best->worst_after > (1 - swap_gain) * best->worst_before)) return false;
+    if (!best) return false;
     work.carry_out(*best);
     ++work.changes.swaps;
     return true;
@@ -108,8 +113,8 @@ bool makes_long_edge(const Improvement& work, const Cavity& cavity, Vertex to) {
     });
 }
 
-bool collapse_at(Improvement& work, Tet t) {
-    const double bound = (1 - least_gain) * aspect_ratio(work.mesh, t);
+bool collapse_at(Improvement& work, Tet t, double ratio) {
+    const double bound = (1 - least_gain) * ratio;
     std::optional<Cavity> best;
     for (Vertex from : work.mesh.tets[t])
         for (Vertex to : work.mesh.tets[t]) {
@@ -123,13 +128,15 @@ bool collapse_at(Improvement& work, Tet t) {
     return true;
 }
 
-bool split_at(Improvement& work, Tet t) {
+bool split_at(Improvement& work, Tet t, double ratio) {
     const Mesh& mesh = work.mesh;
-    const double bound = (1 - least_gain) * aspect_ratio(mesh, t);
+    const double bound = (1 - least_gain) * ratio;
     std::optional<Cavity> best;
     for (const auto& [i, j] : tet_edges) {
         const Edge e{mesh.tets[t][at(i)], mesh.tets[t][at(j)]};
-        keep_better(best, edge_split(mesh, shell(mesh, e, t), e, best ? best->worst_after : bound));
+        shell(mesh, e, t, work.around);
+        auto cavity = edge_split(mesh, work.around, e, best ? best->worst_after : bound);
+        if (cavity && (!best || cavity->worst_after < best->worst_after)) best = std::move(cavity);
     }
     if (!best) return false;
     work.carry_out(*best);
@@ -142,6 +149,7 @@ bool split_at(Improvement& work, Tet t) {
 Changes& Changes::operator+=(const Changes& other) {
     vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());
     cells.insert(cells.end(), other.cells.begin(), other.cells.end());
+    removed.insert(removed.end(), other.removed.begin(), other.removed.end());
     smoothing_sweeps += other.smoothing_sweeps;
     moved += other.moved;
     swaps += other.swaps;
@@ -155,59 +163,43 @@ Changes& Changes::operator+=(const Changes& other) {
     return *this;
 }
 
-Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
-    BadCells bad(mesh, std::min(options.swap_above, options.good_enough));
-    Improvement work{mesh, at_time, options, bad, {}};
-    for (Tet t : cells) bad.add(t);
+void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
+    for (std::size_t k = 0; k < cavity.inserted.size(); ++k) changes.vertices.push_back(next_vertex(mesh, k));
+    const auto added = replace_cells(mesh, cavity);
+    changes.cells.insert(changes.cells.end(), added.begin(), added.end());
+    changes.removed.insert(changes.removed.end(), cavity.removed.begin(), cavity.removed.end());
+    changes.cells_replaced += static_cast<int>(cavity.removed.size());
+    changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
+}
+
+Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, Array<Tet, float>& stuck_at,
+                const AdaptOptions& options) {
+    Improvement work{mesh, at_time, options, BadCells(mesh, std::min(options.swap_above, options.good_enough)),
+                     stuck_at};
+    if (stuck_at.size() < mesh.tets.size()) stuck_at.resize(mesh.tets.size() + mesh.tets.size() / 4);
+    for (Tet t : cells) work.bad.add(t);
     for (int round = 0; round < most_rounds; ++round) {
         std::vector<Tet> stuck;
         bool progress = false;
-        while (const auto t = bad.take()) {
-            const bool bad_cell = aspect_ratio(mesh, *t) > options.good_enough;
-            if (swap_at(work, *t)) progress = true;
-            else if (!bad_cell) continue;
-            else if (smooth_at(work, *t) || collapse_at(work, *t) || split_at(work, *t)) progress = true;
-            else stuck.push_back(*t);
+        while (const auto worst = work.bad.take()) {
+            const auto [t, ratio] = *worst;
+            const bool bad = ratio > options.good_enough;
+            if (!bad && ratio < worth_another_try * static_cast<double>(stuck_at[t])) continue;
+            stuck_at[t] = 0;
+            if (swap_at(work, t, ratio)) progress = true;
+            else if (!bad) stuck_at[t] = static_cast<float>(ratio);
+            else if (smooth_at(work, t) || collapse_at(work, t, ratio) || split_at(work, t, ratio)) progress = true;
+            else stuck.push_back(t);
         }
         if (!progress || stuck.empty()) break;
-        for (Tet t : stuck) bad.add(t);
+        for (Tet t : stuck) work.bad.add(t);
     }
     return std::move(work.changes);
 }
 
-namespace {
-
-/// The vertices of the cells worse than `above`, in order.
-std::vector<Vertex> vertices_of_worse(const Mesh& mesh, std::span<const Tet> cells, double above) {
-    std::vector<Vertex> vertices;
-    for (Tet t : cells)
-        if (aspect_ratio(mesh, t) > above)
-            vertices.insert(vertices.end(), mesh.tets[t].begin(), mesh.tets[t].end());
-    std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
-    return vertices;
-}
-
-}  // namespace
-
-Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {
-    Changes changes;
-    const auto note = [&](std::span<const Vertex> moved) {
-        changes.vertices.insert(changes.vertices.end(), moved.begin(), moved.end());
-        changes.moved += static_cast<int>(moved.size());
-        changes.smoothing_sweeps += moved.empty() ? 0 : 1;
-    };
-    const auto poor = vertices_of_worse(mesh, cells, options.smooth_above);
-    for (const LaplaceWeights& weights : {LaplaceWeights{0, 1}, LaplaceWeights{1, 0}})
-        note(smooth_guarded(mesh, poor, weights));
-    for (int sweep = 0; sweep < options.relaxations; ++sweep) note(relax(mesh, poor));
-
-    std::vector<Vertex> optimised;
-    for (Vertex v : vertices_of_worse(mesh, cells, options.good_enough))
-        if (optimise_vertex(mesh, v, 0.9 * options.good_enough)) optimised.push_back(v);
-    note(optimised);
-    return changes;
+Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
+    Array<Tet, float> stuck_at;
+    return improve(mesh, cells, at_time, stuck_at, options);
 }
 
 }  // namespace kropla

@@ -1,9 +1,11 @@
-// Motion of bodies through the mesh. Bodies move rigidly; their displacement is spread into the surroundings by inverse-distance weights, after [Luke, Collins,
-// Blades 2012], "A fast mesh deformation method using explicit interpolation"; here each body's displacement is that
-// of its rigid motion at the vertex, the walls weigh in with none, and a body reaches no farther than a few of its
-// own sizes, so that work stays near it.
+// Motion of bodies through the mesh. Bodies move rigidly; their displacement is spread into the surroundings by weights
+// that fall with the distance, as in [Luke, Collins, Blades 2012], "A fast mesh deformation method using explicit
+// interpolation". Here a body's displacement is that of its rigid motion at the vertex, and how much of it is felt
+// follows the cells' size, so that cells stream past the body instead of being squeezed and torn; vertices on the
+// faces of the box slide along; and a body reaches no farther than a few of its own sizes.
 
 #include "adapt/adapt.h"
+#include "adapt/zone.h"
 #include "domain/layer_room.h"
 #include "generate/layers.h"
 #include "mesh/quality.h"
@@ -16,7 +18,7 @@
 namespace kropla {
 namespace {
 
-constexpr double reach_in_body_sizes = 3.0;     // how far a displacement is felt
+constexpr double reach_in_body_sizes = 8.0;     // how far a displacement is felt
 constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -44,16 +46,14 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
     return result;
 }
 
-double distance_to_walls(const Box& box, const Vec3& x) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int axis = 0; axis < 3; ++axis) least = std::min({least, x[axis] - box.min[axis], box.max[axis] - x[axis]});
-    return std::max(least, 0.0);
-}
-
-/// Falls smoothly from 1 at the body to 0 at its reach.
-double felt(double distance, double reach) {
-    const double s = distance / reach;
-    return s >= 1 ? 0 : (1 - s * s) * (1 - s * s);
+/// The share of a body's motion that the mesh takes part in at a distance from it. Seen from the body, cells stream
+/// past; with their size h rising outwards, as many vertices enter any part as leave it if the stream is as h^3.
+double felt(const SizeField& size, double distance, double reach) {
+    if (distance >= reach) return 0;
+    const auto volume_at = [&](double d) { return std::pow(size.surface + size.growth * d, 3); };
+    const double here = volume_at(distance), near = volume_at(0), far = volume_at(reach);
+    if (far == near) return 1 - distance / reach;
+    return 1 - (here - near) / (far - near);
 }
 
 /// The distance from the body, or from the shell of its layer if it has one outside.
@@ -64,23 +64,29 @@ double distance_to_body(const Snapshot& at, std::size_t body, const Vec3& x) {
     return std::max(d - layer_thickness(at, body, false, closest_point(shape, x)), 0.0);
 }
 
-/// The displacement of the point `x` of the surroundings; nothing if it is out of every body's reach, or on a wall.
+/// The displacement of the point `x` of the surroundings; nothing if it is out of every body's reach. None goes
+/// across a wall.
 std::optional<Vec3> spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) {
-    const double to_wall = distance_to_walls(at.box, x);
-    if (to_wall == 0) return std::nullopt;
     bool reached = false;
-    double total = 1 / (to_wall * to_wall);
+    double total = 0;
+    double least = std::numeric_limits<double>::infinity();
     Vec3 sum;
     for (std::size_t i = 0; i < travels.size(); ++i) {
         const double d = distance_to_body(at, i, x);
         if (d == 0) return travels[i].displacement(x);
-        const double share = felt(d, travels[i].reach);
+        const double share = felt(at.size, d, travels[i].reach);
         reached |= share > 0;
         total += 1 / (d * d);
         sum += share / (d * d) * travels[i].displacement(x);
+        least = std::min(least, d);
     }
     if (!reached) return std::nullopt;
-    return sum / total;
+    Vec3 u = sum / total;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double y = std::max(0.0, std::min(x[axis] - at.box.min[axis], at.box.max[axis] - x[axis]));
+        u[axis] *= y * y / (y * y + least * least);
+    }
+    return u;
 }
 
 /// Six times the volume of a tet as its corners go along straight lines, as a cubic in the fraction s of the way:
@@ -107,6 +113,14 @@ double positive_until(const std::array<double, 4>& b, int depth = 0) {
     return 0.5 + positive_until({middle, r2, r1, b[3]}, depth + 1) / 2;
 }
 
+/// The share of the way up to which a tet keeps `least` of its volume.
+double positive_share(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de, double least) {
+    auto b = volume_along(e, de);
+    const double kept = least * b[0];
+    for (double& x : b) x -= kept;
+    return positive_until(b);
+}
+
 double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displacement, double least) {
     const auto& v = mesh.tets[t];
     std::array<Vec3, 3> e, de;
@@ -114,82 +128,63 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displac
         e[at(i)] = mesh.position[v[at(i + 1)]] - mesh.position[v[0]];
         de[at(i)] = displacement[v[at(i + 1)]] - displacement[v[0]];
     }
-    auto b = volume_along(e, de);
-    const double kept = least * b[0];
-    for (double& x : b) x -= kept;
-    return positive_until(b);
+    return positive_share(e, de, least);
 }
 
-/// The surroundings' tets with a vertex in reach of a body, found outwards from the bodies, and the displacement of
-/// each of their vertices.
-struct Reached {
-    std::vector<Tet> cells;
-    std::vector<Vertex> vertices;
-    Array<Vertex, Vec3> displacement;
-};
+using Goals = std::vector<std::optional<Vec3>>;  // per vertex of a zone; none: it stays
 
-/// The displacement of the bodies' vertices: rigid, but for the columns of layers, which stand on their wall at t1 as
-/// high as the gaps there let them.
-Array<Vertex, Vec3> displacement_of_bodies(const Mesh& mesh, std::span<const Travel> travels, const Snapshot& at_end,
-                                           std::span<const std::vector<Vertex>> bodies) {
-    Array<Vertex, Vec3> displacement(mesh.position.size());
+/// Adds the bodies' vertices, and where they go: rigidly with the body, but for the columns of layers, which stand on
+/// their wall at the end as high as the gaps there let them.
+Goals add_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
+                 std::span<const std::vector<Vertex>> bodies, Zone& zone) {
+    Goals goals;
     for (std::size_t i = 0; i < bodies.size(); ++i)
-        for (Vertex v : bodies[i]) displacement[v] = travels[i].displacement(mesh.position[v]);
+        for (Vertex v : bodies[i]) {
+            add_held(zone, mesh, v);
+            goals.push_back(mesh.position[v] + travels[i].displacement(mesh.position[v]));
+        }
     for (const PrismLayer& layer : mesh.layers) {
         std::vector<Vec3> wall;
-        for (int column = 0; column < count_columns(layer); ++column) {
-            const Vertex v = column_vertex(layer, column, 0);
-            wall.push_back(mesh.position[v] + displacement[v]);
-        }
+        for (int column = 0; column < count_columns(layer); ++column)
+            wall.push_back(*goals[at(zone.number(column_vertex(layer, column, 0)))]);
         const auto places = column_places(layer, wall, at_end);
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (i % static_cast<std::size_t>(layer.count + 1) != 0)
-                displacement[layer.columns[i]] = places[i] - mesh.position[layer.columns[i]];
+            if (i % static_cast<std::size_t>(layer.count + 1) != 0) goals[at(zone.number(layer.columns[i]))] = places[i];
     }
-    return displacement;
+    return goals;
 }
 
-Reached reached_by(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end,
-                   std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies) {
-    enum State : char { unseen, fixed, moving, in_body };
-    Array<Vertex, State> state(mesh.position.size(), unseen);
-    Array<Tet, char> seen(mesh.tets.size(), 0);
-    Reached reached;
-    reached.displacement = displacement_of_bodies(mesh, travels, at_end, bodies);
-    for (const auto& body : bodies)
-        for (Vertex v : body) state[v] = in_body;
-
-    const auto look_at = [&](Vertex v) {
-        if (state[v] != unseen) return;
-        const auto u = spread(travels, at_start, mesh.position[v]);
-        state[v] = u ? moving : fixed;
-        if (!u) return;
-        reached.displacement[v] = *u;
-        reached.vertices.push_back(v);
-    };
-    const auto add = [&](Tet t) {
-        if (seen[t] != 0 || mesh.region[t] != surroundings) return;
-        seen[t] = 1;
-        reached.cells.push_back(t);
-    };
+/// A tet of the surroundings at the body.
+std::optional<Tet> tet_beside(const Mesh& mesh, std::span<const Vertex> body) {
     std::vector<Tet> around;
-    for (const auto& body : bodies)
-        for (Vertex v : body) {
-            ball(mesh, v, around);
-            for (Tet t : around) add(t);
-        }
-    for (std::size_t i = 0; i < reached.cells.size(); ++i) {
-        const Tet t = reached.cells[i];
-        bool moves = false;
-        for (Vertex v : mesh.tets[t]) {
-            look_at(v);
-            moves |= state[v] != fixed;
-        }
-        if (!moves) continue;
-        for (Tet n : mesh.neighbour[t])
-            if (n.exists()) add(n);
+    for (Vertex v : body) {
+        ball(mesh, v, around);
+        const auto found = std::ranges::find_if(around, [&](Tet t) { return mesh.region[t] == surroundings; });
+        if (found != around.end()) return *found;
     }
-    return reached;
+    return std::nullopt;
+}
+
+/// Gathers the bodies' vertices, the surroundings' tets with a vertex in reach of a body, found outwards from the
+/// bodies, and where the vertices are to go.
+void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
+                    std::span<const std::vector<Vertex>> bodies, Zone& zone) {
+    clear(zone);
+    Goals goals = add_bodies(mesh, at_end, travels, bodies, zone);
+    for (const auto& body : bodies)
+        if (const auto t = tet_beside(mesh, body)) add_cell(zone, mesh, *t);
+    for (std::size_t i = 0; i < zone.cells.size(); ++i) {
+        for (std::size_t v = goals.size(); v < zone.vertices.size(); ++v) {
+            const auto way = spread(travels, at_start, zone.start[v]);
+            goals.push_back(way ? std::optional(zone.start[v] + *way) : std::nullopt);
+        }
+        if (std::ranges::none_of(zone.corners[i], [&](int v) { return goals[at(v)].has_value(); })) continue;
+        for (Tet n : mesh.neighbour[zone.cells[i]])
+            if (n.exists() && mesh.region[n] == surroundings) add_cell(zone, mesh, n);
+    }
+    close(zone, mesh);
+    for (std::size_t v = 0; v < zone.vertices.size(); ++v)
+        if (goals[v]) zone.place[v] = *goals[v];
 }
 
 }  // namespace
@@ -201,29 +196,31 @@ double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<V
     return fraction;
 }
 
-MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1) {
-    constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
-    const auto journey = travels(domain, t0, t1);
-    Reached reached = reached_by(mesh, snapshot(domain, t0), snapshot(domain, t1), journey, bodies);
+double safe_fraction(const Zone& zone, int cell, double least) {
+    const auto& v = zone.corners[at(cell)];
+    std::array<Vec3, 3> e, de;
+    for (int i = 0; i < 3; ++i) {
+        e[at(i)] = zone.start[at(v[at(i + 1)])] - zone.start[at(v[0])];
+        de[at(i)] = zone.place[at(v[at(i + 1)])] - zone.place[at(v[0])] - e[at(i)];
+    }
+    return positive_share(e, de, least);
+}
 
+MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
+                         double t1, Zone& zone) {
+    constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
+    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
     MoveReport report;
     report.fraction = 1;
-    for (Tet t : reached.cells) {
-        const double f = safe_fraction(mesh, t, reached.displacement, least_volume_kept);
+    for (int cell = 0; cell < static_cast<int>(zone.cells.size()); ++cell) {
+        const double f = safe_fraction(zone, cell, least_volume_kept);
         if (f < report.fraction) {
             report.fraction = f;
-            report.limiting = t;
+            report.limiting = zone.cells[at(cell)];
         }
     }
-    report.cells = std::move(reached.cells);
-    report.vertices = std::move(reached.vertices);
     report.arrived = report.fraction == 1;
-    if (!report.arrived) return report;
-
-    for (Vertex v : report.vertices) mesh.position[v] += reached.displacement[v];
-    for (const auto& body : bodies)
-        for (Vertex v : body) mesh.position[v] += reached.displacement[v];
+    if (report.arrived) write_places(zone, mesh);
     return report;
 }
 

@@ -13,6 +13,7 @@ constexpr int most_legs = 8;             // into which the motion of a step is c
 constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
+constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
 constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
 constexpr double harder = 0.8;           // there, cells must be better by this than elsewhere
@@ -51,24 +52,21 @@ std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, cons
     return cells;
 }
 
-Array<Vertex, Vec3> displacement_between(const Mesh& before, const Mesh& after) {
-    Array<Vertex, Vec3> displacement(before.position.size());
-    for (Vertex v : before.position.indices()) displacement[v] = after.position[v] - before.position[v];
-    return displacement;
-}
-
 }  // namespace
 
 MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options)
-    : domain_(std::move(domain)), options_(options), reference_(std::move(mesh)), time_(t), target_time_(t) {
+    : domain_(std::move(domain)), options_(options), reference_(std::move(mesh)), before_(reference_),
+      current_(reference_), time_(t), target_time_(t) {
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
         bodies_.push_back(vertices_of(reference_, region_of_body(body)));
 }
 
 void MovingMesh::begin_step() {
-    current_ = reference_;
-    before_ = reference_;
+    for (Mesh* mesh : {&current_, &before_}) copy_changed(*mesh, reference_, replaced_, moved_);
+    replaced_.clear();
+    moved_.clear();
     touched_.clear();
+    clear(zone_);
     stuck_.reset();
     statistics_ = {};
 }
@@ -88,8 +86,9 @@ const Changes& MovingMesh::refine() {
         options.whole_region = false;
         changes += repair(current_, cells_near(current_, trouble_, at_time), at_time, options);
     }
-    before_ = current_;
-    note_touched(current_, changes.cells);
+    note_replaced(changes);
+    copy_changed(before_, current_, replaced_, changes.vertices);
+    touched_ = changes.cells;
     return changes;
 }
 
@@ -98,28 +97,44 @@ void MovingMesh::move_boundary(double t) {
     double here = time_;
     while (statistics_.legs < most_legs) {
         ++statistics_.legs;
-        auto report = kropla::move_boundary(current_, domain_, bodies_, here, t);
-        note_touched(current_, report.cells);
+        touched_.insert(touched_.end(), zone_.cells.begin(), zone_.cells.end());
+        const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, t, zone_);
         if (report.arrived) {
+            note_moved();
             stuck_.reset();
             return;
         }
         const double leg = share_of_safe * report.fraction;
         const double next = here + leg * (t - here);
-        if (leg < least_leg || !kropla::move_boundary(current_, domain_, bodies_, here, next).arrived) {
-            stuck_ = Refusal{describe(current_, report.limiting, "would be turned inside out"), report.limiting,
-                             here - time_};
-            return;
-        }
+        stuck_ = Refusal{describe(current_, report.limiting, "would be turned inside out"), report.limiting,
+                         here - time_};
+        if (leg < least_leg || !kropla::move_boundary(current_, domain_, bodies_, here, next, zone_).arrived) return;
+        note_moved();
+        optimise_at(next);
         here = next;
-        statistics_.optimised += optimise_places(current_, report.cells, options_);
         stuck_ = Refusal{describe(current_, report.limiting, "keeps the bodies from arriving"), report.limiting,
                          here - time_};
     }
 }
 
 void MovingMesh::optimise() {
-    if (!stuck_) statistics_.optimised += optimise_places(current_, touched_, options_);
+    if (stuck_) return;
+    optimise_at(target_time_);
+    // What earlier legs moved is looked after too.
+    if (touched_.empty()) return;
+    touched_.insert(touched_.end(), zone_.cells.begin(), zone_.cells.end());
+    gather(zone_, current_, touched_);
+    find_sizes(zone_, snapshot(domain_, target_time_));
+    for (std::size_t v = 0; v < zone_.vertices.size(); ++v) zone_.start[v] = before_.position[zone_.vertices[v]];
+    measure(zone_);
+    note_moved();
+}
+
+void MovingMesh::optimise_at(double t) {
+    find_sizes(zone_, snapshot(domain_, t));
+    statistics_.optimised.moved += optimise_places(zone_, options_);
+    statistics_.optimised.smoothing_sweeps += options_.relaxations;
+    write_places(zone_, current_);
 }
 
 std::optional<Refusal> MovingMesh::refusal() const {
@@ -127,10 +142,9 @@ std::optional<Refusal> MovingMesh::refusal() const {
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;
-    const auto displacement = displacement_between(before_, current_);
-    for (Tet t : touched_)
-        if (const double safe = safe_fraction(before_, {&t, 1}, displacement); safe < 1)
-            return Refusal{describe(before_, t, "would be turned inside out on its way"), t,
+    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
+        if (const double safe = safe_fraction(zone_, static_cast<int>(c), least_volume_kept); safe < 1)
+            return Refusal{describe(before_, zone_.cells[c], "would be turned inside out on its way"), zone_.cells[c],
                            safe * (target_time_ - time_)};
     return std::nullopt;
 }
@@ -149,10 +163,10 @@ std::optional<Refusal> MovingMesh::narrow_gap() const {
 std::optional<Refusal> MovingMesh::worst_cell() const {
     Refusal refusal;
     double worst = options_.floor;
-    for (Tet t : touched_)
-        if (const double ratio = aspect_ratio(current_, t); ratio > worst) {
-            worst = ratio;
-            refusal.limiting = t;
+    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
+        if (zone_.ratio[c] > worst) {
+            worst = zone_.ratio[c];
+            refusal.limiting = zone_.cells[c];
         }
     if (!refusal.limiting.exists()) return std::nullopt;
     char what[80];
@@ -180,34 +194,36 @@ std::optional<Refusal> MovingMesh::squeezed_prism() const {
 void MovingMesh::refuse() {
     if (const auto reason = refusal(); reason && reason->limiting.exists())
         trouble_.push_back(centroid(before_, reason->limiting));
-    current_ = reference_;
-    before_ = reference_;
 }
 
 const Changes& MovingMesh::accept() {
     time_ = target_time_;
-    before_ = std::move(current_);
-    reference_ = before_;
+    std::swap(before_, current_);
+    copy_changed(reference_, before_, replaced_, moved_);
     trouble_.clear();
 
     const Snapshot at_time = snapshot(domain_, time_);
     Changes& changes = statistics_.remeshed;
-    changes = adapt_to_size(reference_, touched_, at_time, options_);
-    note_touched(reference_, changes.cells);
-    changes += improve(reference_, touched_, at_time, options_);
-    note_touched(reference_, changes.cells);
-    changes += repair(reference_, touched_, at_time, options_);
-    note_touched(reference_, changes.cells);
-    statistics_.cells_touched = static_cast<int>(touched_.size());
+    changes = adapt_to_size(reference_, zone_, at_time, options_);
+    for (Tet t : changes.cells)
+        if (static_cast<std::size_t>(t.value) < stuck_at_.size()) stuck_at_[t] = 0;
+    std::vector<Tet> poor = changes.cells;
+    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
+        if (zone_.ratio[c] > options_.swap_above) poor.push_back(zone_.cells[c]);
+    changes += improve(reference_, poor, at_time, stuck_at_, options_);
+    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
+    changes += repair(reference_, poor, at_time, options_);
+    note_replaced(changes);
+    statistics_.cells_touched = static_cast<int>(zone_.cells.size());
     return changes;
 }
 
-void MovingMesh::note_touched(const Mesh& mesh, std::span<const Tet> cells) {
-    touched_.insert(touched_.end(), cells.begin(), cells.end());
-    std::erase_if(touched_, [&](Tet t) { return !alive(mesh, t); });
-    std::ranges::sort(touched_);
-    const auto repeated = std::ranges::unique(touched_);
-    touched_.erase(repeated.begin(), repeated.end());
+void MovingMesh::note_moved() { moved_.insert(moved_.end(), zone_.vertices.begin(), zone_.vertices.end()); }
+
+void MovingMesh::note_replaced(const Changes& changes) {
+    replaced_.insert(replaced_.end(), changes.cells.begin(), changes.cells.end());
+    replaced_.insert(replaced_.end(), changes.removed.begin(), changes.removed.end());
+    moved_.insert(moved_.end(), changes.vertices.begin(), changes.vertices.end());
 }
 
 }  // namespace kropla

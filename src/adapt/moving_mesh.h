@@ -1,6 +1,6 @@
 #pragma once
 
-#include "adapt/adapt.h"
+#include "adapt/zone.h"
 
 namespace kropla {
 
@@ -63,14 +63,20 @@ private:
     [[nodiscard]] std::optional<Refusal> narrow_gap() const;
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
-    void note_touched(const Mesh& mesh, std::span<const Tet> cells);
+    void optimise_at(double t);
+    void note_moved();
+    void note_replaced(const Changes& changes);
 
     Domain domain_;
     AdaptOptions options_;
     std::vector<std::vector<Vertex>> bodies_;  // the vertices of each body's cells
     Mesh reference_, before_, current_;
     double time_, target_time_;
-    std::vector<Tet> touched_;      // cells of the current mesh that moved or are new
+    Zone zone_;                      // what the last leg moved
+    std::vector<Tet> touched_;       // cells that moved in earlier legs of the step or were refined
+    Array<Tet, float> stuck_at_;     // aspect ratios at which nothing helped a cell
+    std::vector<Tet> replaced_;      // in which slots the three meshes may differ,
+    std::vector<Vertex> moved_;      // and which vertices may have other places
     std::vector<Vec3> trouble_;     // where the attempts refused since the last accepted step got stuck
     std::optional<Refusal> stuck_;  // the motion did not arrive
     StepStatistics statistics_;

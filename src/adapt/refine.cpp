@@ -2,12 +2,14 @@
 // the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
 
 #include "adapt/adapt.h"
-#include "adapt/star.h"
+#include "adapt/zone.h"
 #include "base/tetrahedron.h"
+#include "mesh/cells.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace kropla {
 namespace {
@@ -82,52 +84,65 @@ std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge
 
 namespace {
 
-struct SizedEdge {
+struct WrongEdge {
     Edge edge;
+    Tet cell;      // that had it when it was found
     double ratio;  // of its length to the target size
 };
 
-/// Lengths in target sizes; the size is asked once per vertex, as it costs a search for the nearest body.
+/// Lengths in target sizes. The zone knows the sizes at its vertices, which cost a search for the nearest body.
 class EdgeMeasure {
 public:
-    EdgeMeasure(const Mesh& mesh, const Snapshot& at_time) : mesh_(mesh), at_time_(at_time) {}
+    EdgeMeasure(const Mesh& mesh, const Zone& zone, const Snapshot& at_time)
+        : mesh_(mesh), zone_(zone), at_time_(at_time) {}
 
-    double ratio(Edge e) { return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size(e.a) + size(e.b)) / 2); }
+    [[nodiscard]] double ratio(Edge e) const {
+        return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size(e.a) + size(e.b)) / 2);
+    }
 
 private:
-    double size(Vertex v) {
-        if (sizes_.size() < mesh_.position.size()) sizes_.resize(mesh_.position.size(), {});
-        auto& known = sizes_[v];
-        if (!(known.at == mesh_.position[v]) || known.size == 0)
-            known = {mesh_.position[v], target_size(at_time_, mesh_.position[v])};
-        return known.size;
+    [[nodiscard]] double size(Vertex v) const {
+        const int known = zone_.number(v);
+        if (known >= 0 && zone_.place[at(known)] == mesh_.position[v]) return zone_.size[at(known)];
+        return target_size(at_time_, mesh_.position[v]);
     }
-    struct Known {
-        Vec3 at;
-        double size = 0;
-    };
     const Mesh& mesh_;
+    const Zone& zone_;
     const Snapshot& at_time_;
-    Array<Vertex, Known> sizes_;
 };
 
-std::vector<Edge> edges_of(const Mesh& mesh, std::span<const Tet> cells) {
-    std::vector<Edge> edges;
-    edges.reserve(6 * cells.size());
-    for (Tet t : cells) {
-        if (!alive(mesh, t)) continue;
+/// The edges of the zone's cells that are too long or too short. Crowds are thinned before gaps are filled; the
+/// shortest and the longest edges come first.
+std::vector<WrongEdge> wrong_edges(const Zone& zone, const AdaptOptions& o) {
+    std::vector<WrongEdge> wrong;
+    for (std::size_t cell = 0; cell < zone.cells.size(); ++cell)
         for (const auto& [i, j] : tet_edges) {
-            const auto [a, b] = std::minmax(mesh.tets[t][at(i)], mesh.tets[t][at(j)]);
-            edges.push_back({a, b});
+            const std::size_t a = at(zone.corners[cell][at(i)]), b = at(zone.corners[cell][at(j)]);
+            const double size = (zone.size[a] + zone.size[b]) / 2, length = distance(zone.place[a], zone.place[b]);
+            if (length <= o.split_above * size && length >= o.collapse_below * size) continue;
+            const auto [first, second] = std::minmax(zone.vertices[a], zone.vertices[b]);
+            wrong.push_back({{first, second}, zone.cells[cell], length / size});
         }
-    }
-    std::ranges::sort(edges, {}, [](Edge e) { return std::pair(e.a, e.b); });
-    const auto repeated = std::ranges::unique(edges);
-    edges.erase(repeated.begin(), repeated.end());
-    return edges;
+    std::ranges::sort(wrong, {}, [](const WrongEdge& w) {
+        return std::tuple(w.ratio > 1, w.ratio > 1 ? -w.ratio : w.ratio, w.edge.a, w.edge.b, w.cell);
+    });
+    const auto repeated = std::ranges::unique(wrong, {}, &WrongEdge::edge);
+    wrong.erase(repeated.begin(), repeated.end());
+    return wrong;
 }
 
-bool makes_long_edge(const Cavity& cavity, Vertex to, EdgeMeasure& measure, double longest) {
+/// A cell that has the edge, if it still is one.
+std::optional<Tet> cell_at(const Mesh& mesh, const WrongEdge& wrong) {
+    const auto has_edge = [&](Tet t) {
+        return alive(mesh, t) && corner_of(mesh, t, wrong.edge.a) >= 0 && corner_of(mesh, t, wrong.edge.b) >= 0;
+    };
+    if (has_edge(wrong.cell)) return wrong.cell;
+    const auto around = ball(mesh, wrong.edge.a);
+    const auto found = std::ranges::find_if(around, has_edge);
+    return found == around.end() ? std::nullopt : std::optional(*found);
+}
+
+bool makes_long_edge(const Cavity& cavity, Vertex to, const EdgeMeasure& measure, double longest) {
     for (const NewTet& t : cavity.added)
         for (Vertex v : t.vertices)
             if (v != to && measure.ratio({v, to}) > longest) return true;
@@ -135,7 +150,7 @@ bool makes_long_edge(const Cavity& cavity, Vertex to, EdgeMeasure& measure, doub
 }
 
 /// The better of the two ways to collapse the edge, if one is allowed.
-std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, EdgeMeasure& measure, const AdaptOptions& o) {
+std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, const EdgeMeasure& measure, const AdaptOptions& o) {
     std::optional<Cavity> best;
     for (const auto& [from, to] : {std::pair(e.a, e.b), std::pair(e.b, e.a)}) {
         auto cavity = edge_collapse(mesh, from, to, best ? best->worst_after : infinity);
@@ -146,49 +161,36 @@ std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, EdgeMeasure&
     return best;
 }
 
-std::optional<Cavity> split(const Mesh& mesh, Edge e, const AdaptOptions& o) {
-    const auto around = shell(mesh, e);
-    if (!around) return std::nullopt;
-    return edge_split(mesh, *around, e, std::max(o.passing, worst_aspect_ratio(mesh, around->tets)));
-}
-
-void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
-    const auto added = replace_cells(mesh, cavity);
-    changes.cells.insert(changes.cells.end(), added.begin(), added.end());
-    changes.cells_replaced += static_cast<int>(cavity.removed.size());
-    changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
+std::optional<Cavity> split(const Mesh& mesh, Edge e, Tet t, const AdaptOptions& o) {
+    const Shell around = shell(mesh, e, t);
+    return edge_split(mesh, around, e, std::max(o.passing, worst_aspect_ratio(mesh, around.tets)));
 }
 
 }  // namespace
 
-Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
+Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options) {
     Changes changes;
-    EdgeMeasure measure(mesh, at_time);
-    std::vector<SizedEdge> wrong;
-    for (Edge e : edges_of(mesh, cells))
-        if (const double r = measure.ratio(e); r > options.split_above || r < options.collapse_below)
-            wrong.push_back({e, r});
-    // Crowds are thinned before gaps are filled; the shortest and the longest edges come first.
-    std::ranges::sort(wrong, {}, [](const SizedEdge& w) {
-        return std::tuple(w.ratio > 1, w.ratio > 1 ? -w.ratio : w.ratio, w.edge.a, w.edge.b);
-    });
-
-    for (const auto& [edge, found] : wrong) {
-        if (!alive(mesh, edge.a) || !alive(mesh, edge.b) || measure.ratio(edge) != found) continue;
-        if (found > 1) {
-            const auto cavity = split(mesh, edge, options);
-            if (!cavity) continue;
-            changes.vertices.push_back(next_vertex(mesh));
-            carry_out(mesh, *cavity, changes);
-            ++changes.splits;
-        } else if (shell(mesh, edge)) {
-            const auto cavity = collapse_either_way(mesh, edge, measure, options);
-            if (!cavity) continue;
-            carry_out(mesh, *cavity, changes);
-            ++changes.collapses;
-        }
+    const EdgeMeasure measure(mesh, zone, at_time);
+    for (const WrongEdge& wrong : wrong_edges(zone, options)) {
+        const auto [a, b] = wrong.edge;
+        if (!alive(mesh, a) || !alive(mesh, b) || measure.ratio(wrong.edge) != wrong.ratio) continue;
+        const auto cell = cell_at(mesh, wrong);
+        if (!cell) continue;
+        const bool is_long = wrong.ratio > 1;
+        const auto cavity = is_long ? split(mesh, wrong.edge, *cell, options)
+                                    : collapse_either_way(mesh, wrong.edge, measure, options);
+        if (!cavity) continue;
+        carry_out(mesh, *cavity, changes);
+        ++(is_long ? changes.splits : changes.collapses);
     }
     return changes;
+}
+
+Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
+    Zone zone;
+    gather(zone, mesh, cells);
+    find_sizes(zone, at_time);
+    return adapt_to_size(mesh, zone, at_time, options);
 }
 
 }  // namespace kropla

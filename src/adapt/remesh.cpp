@@ -309,14 +309,6 @@ std::vector<Tet> whole_region(const Mesh& mesh, Region region) {
     return cells;
 }
 
-void unite(Mesh& mesh, const Cavity& cavity, Changes& changes) {
-    for (std::size_t k = 0; k < cavity.inserted.size(); ++k) changes.vertices.push_back(next_vertex(mesh, k));
-    const auto added = replace_cells(mesh, cavity);
-    changes.cells.insert(changes.cells.end(), added.begin(), added.end());
-    changes.cells_replaced += static_cast<int>(cavity.removed.size());
-    changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
-}
-
 /// Climbs from one bad cell: its neighbourhood is remeshed, ring by ring, until its place is below the floor.
 void climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, Changes& changes) {
     std::vector<Tet> cluster{bad};
@@ -325,7 +317,7 @@ void climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, C
         options.seed = random_bits(options.seed, static_cast<std::uint64_t>(ring));
         const auto cavity = cluster_remesh(mesh, cluster, at_time, options);
         if (!cavity || cavity->worst_after > options.floor) continue;
-        unite(mesh, *cavity, changes);
+        carry_out(mesh, *cavity, changes);
         ++changes.local_remeshes;
         changes.largest_ring = std::max(changes.largest_ring, ring);
         return;
@@ -333,7 +325,7 @@ void climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, C
     if (!options.whole_region) return;
     const auto cavity = cluster_remesh(mesh, whole_region(mesh, mesh.region[bad]), at_time, options);
     if (!cavity) return;
-    unite(mesh, *cavity, changes);
+    carry_out(mesh, *cavity, changes);
     ++changes.global_remeshes;
 }
 

@@ -12,7 +12,6 @@ namespace kropla {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double relaxation_gain = 0.995;  // the energy must fall at least to this share
 
 }  // namespace
 
@@ -59,44 +58,6 @@ std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices,
         if (worst_in_star(star, place, worst) > worst) continue;
         mesh.position[v] = place;
         moved.push_back(v);
-    }
-    return moved;
-}
-
-namespace {
-
-/// The volume-weighted barycentre of a ball, by its link.
-Vec3 barycentre(std::span<const StarFacet> star, const Vec3& x) {
-    Vec3 sum;
-    double total = 0;
-    for (const auto& [a, b, c] : star) {
-        const double volume = determinant(a - x, b - x, c - x);
-        sum += volume * (a + b + c - 3 * x);
-        total += volume;
-    }
-    return x + sum / (4 * total);
-}
-
-}  // namespace
-
-std::vector<Vertex> relax(Mesh& mesh, std::span<const Vertex> vertices) {
-    std::vector<Vertex> moved;
-    std::vector<Tet> around;
-    std::vector<StarFacet> star;
-    for (Vertex v : vertices) {
-        ball(mesh, v, around);
-        const Freedom f = freedom(constraint(mesh, v, around));
-        if (f.none()) continue;
-        star_of_ball(mesh, v, around, star);
-        const Vec3 here = mesh.position[v];
-        const Vec3 way = restricted(barycentre(star, here) - here, f);
-        const double energy = energy_of_star(star, here, infinity);
-        for (double share : {1.0, 0.4}) {
-            if (energy_of_star(star, here + share * way, energy) > relaxation_gain * energy) continue;
-            mesh.position[v] = here + share * way;
-            moved.push_back(v);
-            break;
-        }
     }
     return moved;
 }

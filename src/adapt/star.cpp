@@ -80,16 +80,6 @@ double worst_in_star(std::span<const StarFacet> star, const Vec3& x, double boun
     return worst;
 }
 
-double energy_of_star(std::span<const StarFacet> star, const Vec3& x, double bound) {
-    double sum = 0;
-    for (const auto& [a, b, c] : star) {
-        const double ratio = tet_aspect_ratio(x, a, b, c);
-        sum += ratio * ratio * ratio * ratio;
-        if (sum > bound) return sum;
-    }
-    return sum;
-}
-
 Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freedom& f, double good_enough) {
     Place best{start, worst_in_star(star, start, infinity)};
     double reach = 0.25 * shortest_distance(star, start);

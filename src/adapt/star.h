@@ -29,10 +29,6 @@ struct Freedom {
 /// The worst aspect ratio of the tets between `x` and the facets; evaluation ends as soon as it exceeds `bound`.
 [[nodiscard]] double worst_in_star(std::span<const StarFacet> star, const Vec3& x, double bound);
 
-/// The sum of the fourth powers of the aspect ratios: a mean that the bad tets rule. Ends as soon as it exceeds
-/// `bound`.
-[[nodiscard]] double energy_of_star(std::span<const StarFacet> star, const Vec3& x, double bound);
-
 struct Place {
     Vec3 x;
     double worst;  // aspect ratio there

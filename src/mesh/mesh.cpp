@@ -156,4 +156,49 @@ Compacted compact(const Mesh& mesh) {
     return result;
 }
 
+namespace {
+
+bool has_slot(const Mesh& mesh, Tet t) { return static_cast<std::size_t>(t.value) < mesh.tets.size(); }
+
+void copy_vertex(Mesh& to, const Mesh& from, Vertex v) {
+    if (static_cast<std::size_t>(v.value) >= from.position.size()) return;
+    to.position[v] = from.position[v];
+    to.tet_at[v] = from.tet_at[v];
+    to.layer_at[v] = from.layer_at[v];
+}
+
+void copy_tet(Mesh& to, const Mesh& from, Tet t) {
+    to.tets[t] = from.tets[t];
+    to.neighbour[t] = from.neighbour[t];
+    to.patch[t] = from.patch[t];
+    to.region[t] = from.region[t];
+}
+
+}  // namespace
+
+void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::span<const Vertex> vertices) {
+    std::vector<Vertex> at_tets;
+    for (const Mesh* mesh : std::initializer_list<const Mesh*>{&to, &from})
+        for (Tet t : tets)
+            if (has_slot(*mesh, t) && alive(*mesh, t))
+                at_tets.insert(at_tets.end(), mesh->tets[t].begin(), mesh->tets[t].end());
+    to.position.resize(from.position.size());
+    to.tet_at.resize(from.tet_at.size());
+    to.layer_at.resize(from.layer_at.size());
+    to.tets.resize(from.tets.size());
+    to.neighbour.resize(from.tets.size());
+    to.patch.resize(from.tets.size());
+    to.region.resize(from.tets.size());
+    for (Tet t : tets) {
+        if (!has_slot(from, t)) continue;
+        copy_tet(to, from, t);
+        for (Tet n : from.neighbour[t])
+            if (n.exists()) copy_tet(to, from, n);
+    }
+    for (Vertex v : at_tets) copy_vertex(to, from, v);
+    for (Vertex v : vertices) copy_vertex(to, from, v);
+    to.free_tets = from.free_tets;
+    to.free_vertices = from.free_vertices;
+}
+
 }  // namespace kropla

@@ -101,25 +101,33 @@ std::vector<Vertex> adjacent_vertices(const Mesh& mesh, Vertex v) {
     return vertices;
 }
 
-Shell shell(const Mesh& mesh, Edge e, Tet t) {
+void shell(const Mesh& mesh, Edge e, Tet t, Shell& s) {
     const auto [c, d] = opposite_edge(mesh, t, e.a, e.b);
-    Shell s{{t}, {c, d}, false};
+    s.tets.assign({t});
+    s.ring.assign({c, d});
     s.closed = walk_round(mesh, e, t, c, d, [&](Tet next, Vertex staying) {
         s.tets.push_back(next);
         s.ring.push_back(staying);
     });
     if (s.closed) {
         s.ring.pop_back();  // the walk came back to c
-        return s;
+        return;
     }
-    std::vector<Tet> tets_before;
-    std::vector<Vertex> ring_before;
+    const auto seen = static_cast<std::ptrdiff_t>(s.tets.size());
     walk_round(mesh, e, t, d, c, [&](Tet next, Vertex staying) {
-        tets_before.push_back(next);
-        ring_before.push_back(staying);
+        s.tets.push_back(next);
+        s.ring.push_back(staying);
     });
-    s.tets.insert(s.tets.begin(), tets_before.rbegin(), tets_before.rend());
-    s.ring.insert(s.ring.begin(), ring_before.rbegin(), ring_before.rend());
+    // The tets found last, backwards, come before the first.
+    std::ranges::reverse(s.tets.begin() + seen, s.tets.end());
+    std::ranges::rotate(s.tets, s.tets.begin() + seen);
+    std::ranges::reverse(s.ring.begin() + seen + 1, s.ring.end());
+    std::ranges::rotate(s.ring, s.ring.begin() + seen + 1);
+}
+
+Shell shell(const Mesh& mesh, Edge e, Tet t) {
+    Shell s;
+    shell(mesh, e, t, s);
     return s;
 }
 

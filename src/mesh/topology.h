@@ -53,6 +53,8 @@ struct Shell {
 };
 /// `t` has the vertices of `e`.
 [[nodiscard]] Shell shell(const Mesh& mesh, Edge e, Tet t);
+/// As above, into `s`: for loops that ask often.
+void shell(const Mesh& mesh, Edge e, Tet t, Shell& s);
 /// Nothing if `e` is not an edge of the mesh.
 [[nodiscard]] std::optional<Shell> shell(const Mesh& mesh, Edge e);
 

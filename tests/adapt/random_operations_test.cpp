@@ -20,7 +20,7 @@ constexpr double worst_allowed = 40;  // of collapses and splits, so that there 
 /// done.
 using Operation = bool (*)(Mesh&, Tet t, int held, Random&);
 
-bool carry_out(Mesh& mesh, const std::optional<Cavity>& cavity) {
+bool take(Mesh& mesh, const std::optional<Cavity>& cavity) {
     if (cavity) replace_cells(mesh, *cavity);
     return cavity.has_value();
 }
@@ -32,27 +32,27 @@ Edge edge_of(const Mesh& mesh, Tet t, Random& random) {
 }
 
 bool remove_face(Mesh& mesh, Tet t, int, Random& random) {
-    return carry_out(mesh, face_removal(mesh, {t, static_cast<int>(random.below(4))}));
+    return take(mesh, face_removal(mesh, {t, static_cast<int>(random.below(4))}));
 }
 
 bool remove_edge(Mesh& mesh, Tet t, int held, Random& random) {
     const Edge e = edge_of(mesh, t, random);
     const Shell around = shell(mesh, e, t);
     if (std::popcount(constraint(mesh, around).patches) != held) return false;
-    return carry_out(mesh, edge_removal(mesh, around, e));
+    return take(mesh, edge_removal(mesh, around, e));
 }
 
 bool collapse_edge(Mesh& mesh, Tet t, int held, Random& random) {
     const Edge e = edge_of(mesh, t, random);
     if (std::popcount(constraint(mesh, e.a, ball(mesh, e.a)).patches) != held) return false;
-    return carry_out(mesh, edge_collapse(mesh, e.a, e.b, worst_allowed));
+    return take(mesh, edge_collapse(mesh, e.a, e.b, worst_allowed));
 }
 
 bool split_edge(Mesh& mesh, Tet t, int held, Random& random) {
     const Edge e = edge_of(mesh, t, random);
     const Shell around = shell(mesh, e, t);
     if (std::popcount(constraint(mesh, around).patches) != held) return false;
-    return carry_out(mesh, edge_split(mesh, around, e, worst_allowed));
+    return take(mesh, edge_split(mesh, around, e, worst_allowed));
 }
 
 bool remesh_ball(Mesh& mesh, Tet t, int, Random& random) {
@@ -60,18 +60,13 @@ bool remesh_ball(Mesh& mesh, Tet t, int, Random& random) {
     for (Tet n : ball(mesh, mesh.tets[t][random.below(4)]))
         if (mesh.region[n] == mesh.region[t]) cluster.push_back(n);
     const AdaptOptions options{.seed = random.bits()};
-    return carry_out(mesh, cluster_remesh(mesh, cluster, snapshot(sphere_in_box(), 0), options));
+    return take(mesh, cluster_remesh(mesh, cluster, snapshot(sphere_in_box(), 0), options));
 }
 
 bool smooth(Mesh& mesh, Tet t, int, Random& random) {
     const Vertex v = mesh.tets[t][random.below(4)];
     const bool volumes = random.below(2) == 0;
     return !smooth_guarded(mesh, {&v, 1}, volumes ? LaplaceWeights{0, 1} : LaplaceWeights{1, 0}).empty();
-}
-
-bool relax_vertex(Mesh& mesh, Tet t, int, Random& random) {
-    const Vertex v = mesh.tets[t][random.below(4)];
-    return !relax(mesh, {&v, 1}).empty();
 }
 
 bool optimise(Mesh& mesh, Tet t, int, Random& random) {
@@ -123,7 +118,6 @@ TEST(RandomOperations, KeepAMeshWithABodyAMesh) {
                         {"split on an edge of the box", split_edge, 2},
                         {"remeshing", remesh_ball},
                         {"smoothing", smooth},
-                        {"relaxation", relax_vertex},
                         {"optimisation", optimise},
                         {"displacement", displace},
                         {"displacement", displace},

@@ -49,11 +49,9 @@ TEST(Star, FreedomIsAcrossNoFaceOfTheBox) {
 
 TEST(Star, BoundsEndTheEvaluationButNotTheAnswer) {
     const auto star = star_of(random_ball(2), Vertex(0));
-    const double worst = worst_in_star(star, {}, infinity), energy = energy_of_star(star, {}, infinity);
+    const double worst = worst_in_star(star, {}, infinity);
     EXPECT_EQ(worst_in_star(star, {}, worst), worst);
-    EXPECT_EQ(energy_of_star(star, {}, energy), energy);
     EXPECT_GT(worst_in_star(star, {}, 0.9 * worst), 0.9 * worst);
-    EXPECT_GT(energy_of_star(star, {}, 0.9 * energy), 0.9 * energy);
     EXPECT_EQ(worst_in_star(star, {100, 0, 0}, infinity), infinity);  // outside the star
 }
 

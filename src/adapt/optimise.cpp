@@ -1,0 +1,119 @@
+// Optimisation of the places of the vertices of a zone (the paper's modification steps, Fig. 5: equalise volumes, then
+// smooth for quality), for little: all vertices go at once to the barycentres of their balls, weighted by volume in
+// target volumes; then the cells are measured, each once; where one has become bad, its vertices go back; and what
+// is bad still is optimised vertex by vertex. Weighting as in the centroidal patch tessellation of [Chen, Holst 2011],
+// "Efficient mesh optimization schemes based on Optimal Delaunay Triangulations".
+
+#include "adapt/zone.h"
+
+#include "base/tetrahedron.h"
+
+#include <algorithm>
+
+namespace kropla {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr double relaxation = 0.7;  // share of the way to the barycentre
+constexpr int most_retreats = 5;    // vertices that are taken back may spoil the cells of others
+
+struct Pull {
+    Vec3 moment;
+    double weight;
+};
+
+void equalise_volumes(Zone& zone) {
+    std::vector<Pull> pulls(zone.cells.size());
+    for (std::size_t c = 0; c < zone.cells.size(); ++c) {
+        const auto& v = zone.corners[c];
+        const Vec3 &p = zone.place[at(v[0])], &q = zone.place[at(v[1])], &r = zone.place[at(v[2])],
+                   &s = zone.place[at(v[3])];
+        const double size = zone.size[at(v[0])] + zone.size[at(v[1])] + zone.size[at(v[2])] + zone.size[at(v[3])];
+        const double weight = determinant(q - p, r - p, s - p) / (size * size * size);
+        pulls[c] = {weight / 4 * (p + q + r + s), weight};
+    }
+    for (std::size_t v = 0; v < zone.vertices.size(); ++v) {
+        if (zone.axes[v] == 0) continue;
+        Pull sum{};
+        for (int i = zone.ball_begin[v]; i < zone.ball_begin[v + 1]; ++i) {
+            const Pull& pull = pulls[at(zone.ball[at(i)])];
+            sum.moment += pull.moment;
+            sum.weight += pull.weight;
+        }
+        const Vec3 way = sum.moment / sum.weight - zone.place[v];
+        zone.place[v] += relaxation * restricted(way, freedom(zone, static_cast<int>(v)));
+    }
+}
+
+void measure_ball(Zone& zone, int v) {
+    for (int i = zone.ball_begin[at(v)]; i < zone.ball_begin[at(v) + 1]; ++i) {
+        const int c = zone.ball[at(i)];
+        zone.ratio[at(c)] = aspect_ratio(zone, c);
+    }
+}
+
+std::vector<int> vertices_of_worse(const Zone& zone, double above) {
+    std::vector<int> vertices;
+    for (std::size_t c = 0; c < zone.cells.size(); ++c)
+        if (zone.ratio[c] > above)
+            for (int v : zone.corners[c])
+                if (zone.axes[at(v)] != 0) vertices.push_back(v);
+    std::ranges::sort(vertices);
+    const auto repeated = std::ranges::unique(vertices);
+    vertices.erase(repeated.begin(), repeated.end());
+    return vertices;
+}
+
+/// Takes the vertices of cells worse than `above` back to `places`.
+int retreat(Zone& zone, const std::vector<Vec3>& places, double above) {
+    int count = 0;
+    for (int v : vertices_of_worse(zone, above)) {
+        if (zone.place[at(v)] == places[at(v)]) continue;
+        zone.place[at(v)] = places[at(v)];
+        measure_ball(zone, v);
+        ++count;
+    }
+    return count;
+}
+
+}  // namespace
+
+void measure(Zone& zone) {
+    zone.ratio.resize(zone.cells.size());
+    for (std::size_t c = 0; c < zone.cells.size(); ++c) zone.ratio[c] = aspect_ratio(zone, static_cast<int>(c));
+}
+
+int optimise_places(Zone& zone, const AdaptOptions& options) {
+    const std::vector<Vec3> moved = zone.place;
+    for (int i = 0; i < options.relaxations; ++i) equalise_volumes(zone);
+    measure(zone);
+    for (int i = 0; i < most_retreats && retreat(zone, moved, options.good_enough) > 0; ++i) {}
+
+    int optimised = 0;
+    std::vector<StarFacet> star;
+    for (int v : vertices_of_worse(zone, options.good_enough)) {
+        star_of_ball(zone, v, star);
+        const Place best = best_place(star, zone.place[at(v)], freedom(zone, v), 0.9 * options.good_enough);
+        if (best.x == zone.place[at(v)]) continue;
+        zone.place[at(v)] = best.x;
+        measure_ball(zone, v);
+        ++optimised;
+    }
+    return optimised;
+}
+
+Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {
+    Zone zone;
+    gather(zone, mesh, cells);
+    zone.size.assign(zone.vertices.size(), 1);
+    Changes changes;
+    optimise_places(zone, options);
+    for (std::size_t v = 0; v < zone.vertices.size(); ++v)
+        if (zone.place[v] != zone.start[v]) changes.vertices.push_back(zone.vertices[v]);
+    changes.moved = static_cast<int>(changes.vertices.size());
+    changes.smoothing_sweeps = options.relaxations;
+    write_places(zone, mesh);
+    return changes;
+}
+
+}  // namespace kropla
