@@ -13,7 +13,6 @@ namespace kropla {
 namespace {
 
 constexpr double least_gain = 1e-3;
-constexpr double worth_another_try = 1.02;      // how much worse a cell must be than when nothing helped it
 constexpr double passable_after_swap = 0.96;    // of good_enough: no swap for the energy makes a worse cell
 constexpr double longest_after_collapse = 2.0;  // [target sizes]
 constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
@@ -52,18 +51,13 @@ struct Improvement {
     const Snapshot& at_time;
     const AdaptOptions& options;
     BadCells bad;
-    Array<Tet, float>& stuck_at;
     Shell around = {};  // room for questions
     Changes changes = {};
 
     void carry_out(const Cavity& cavity) {
         const std::size_t known = changes.cells.size();
         kropla::carry_out(mesh, cavity, changes);
-        if (stuck_at.size() < mesh.tets.size()) stuck_at.resize(mesh.tets.size() + mesh.tets.size() / 4);
-        for (std::size_t i = known; i < changes.cells.size(); ++i) {
-            stuck_at[changes.cells[i]] = 0;
-            bad.add(changes.cells[i]);
-        }
+        for (std::size_t i = known; i < changes.cells.size(); ++i) bad.add(changes.cells[i]);
     }
 };
 
@@ -172,11 +166,8 @@ void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
     changes.vertices_inserted += static_cast<int>(cavity.inserted.size());
 }
 
-Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, Array<Tet, float>& stuck_at,
-                const AdaptOptions& options) {
-    Improvement work{mesh, at_time, options, BadCells(mesh, std::min(options.swap_above, options.good_enough)),
-                     stuck_at};
-    if (stuck_at.size() < mesh.tets.size()) stuck_at.resize(mesh.tets.size() + mesh.tets.size() / 4);
+Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
+    Improvement work{mesh, at_time, options, BadCells(mesh, std::min(options.swap_above, options.good_enough))};
     for (Tet t : cells) work.bad.add(t);
     for (int round = 0; round < most_rounds; ++round) {
         std::vector<Tet> stuck;
@@ -184,10 +175,8 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time,
         while (const auto worst = work.bad.take()) {
             const auto [t, ratio] = *worst;
             const bool bad = ratio > options.good_enough;
-            if (!bad && ratio < worth_another_try * static_cast<double>(stuck_at[t])) continue;
-            stuck_at[t] = 0;
             if (swap_at(work, t, ratio)) progress = true;
-            else if (!bad) stuck_at[t] = static_cast<float>(ratio);
+            else if (!bad) continue;
             else if (smooth_at(work, t) || collapse_at(work, t, ratio) || split_at(work, t, ratio)) progress = true;
             else stuck.push_back(t);
         }
@@ -195,11 +184,6 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time,
         for (Tet t : stuck) work.bad.add(t);
     }
     return std::move(work.changes);
-}
-
-Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
-    Array<Tet, float> stuck_at;
-    return improve(mesh, cells, at_time, stuck_at, options);
 }
 
 }  // namespace kropla

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 namespace kropla {
 namespace {
@@ -12,6 +13,8 @@ namespace {
 constexpr int most_legs = 8;             // into which the motion of a step is cut
 constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
+constexpr double worse_in_step = 1.02;   // a cell that gets worse by this has a chance of being improved
+constexpr std::size_t turns = 8;         // steps after which any other cell is tried again
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
 constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
@@ -205,17 +208,31 @@ const Changes& MovingMesh::accept() {
     const Snapshot at_time = snapshot(domain_, time_);
     Changes& changes = statistics_.remeshed;
     changes = adapt_to_size(reference_, zone_, at_time, options_);
-    for (Tet t : changes.cells)
-        if (static_cast<std::size_t>(t.value) < stuck_at_.size()) stuck_at_[t] = 0;
-    std::vector<Tet> poor = changes.cells;
-    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
-        if (zone_.ratio[c] > options_.swap_above) poor.push_back(zone_.cells[c]);
-    changes += improve(reference_, poor, at_time, stuck_at_, options_);
+    std::vector<Tet> poor = poor_cells();
+    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
+    changes += improve(reference_, poor, at_time, options_);
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
     changes += repair(reference_, poor, at_time, options_);
     note_replaced(changes);
     statistics_.cells_touched = static_cast<int>(zone_.cells.size());
     return changes;
+}
+
+/// The cells that are to be improved if they can: all bad ones; of those that are passable, the ones that have become
+/// worse in this step, and some others, as most of them have been tried in vain before. Which others follows from the
+/// time, so that a run that is resumed makes the same choice.
+std::vector<Tet> MovingMesh::poor_cells() const {
+    const auto turn = std::hash<double>{}(time_);
+    std::vector<Tet> poor;
+    for (std::size_t c = 0; c < zone_.cells.size(); ++c) {
+        const double ratio = zone_.ratio[c];
+        if (ratio <= options_.swap_above) continue;
+        const Tet t = zone_.cells[c];
+        const bool has_turn = (static_cast<std::size_t>(t.value) + turn) % turns == 0;
+        if (ratio > options_.good_enough || has_turn || ratio > worse_in_step * start_ratio(zone_, static_cast<int>(c)))
+            poor.push_back(t);
+    }
+    return poor;
 }
 
 void MovingMesh::note_moved() { moved_.insert(moved_.end(), zone_.vertices.begin(), zone_.vertices.end()); }

@@ -64,6 +64,7 @@ private:
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
     void optimise_at(double t);
+    [[nodiscard]] std::vector<Tet> poor_cells() const;
     void note_moved();
     void note_replaced(const Changes& changes);
 
@@ -74,7 +75,6 @@ private:
     double time_, target_time_;
     Zone zone_;                      // what the last leg moved
     std::vector<Tet> touched_;       // cells that moved in earlier legs of the step or were refined
-    Array<Tet, float> stuck_at_;     // aspect ratios at which nothing helped a cell
     std::vector<Tet> replaced_;      // in which slots the three meshes may differ,
     std::vector<Vertex> moved_;      // and which vertices may have other places
     std::vector<Vec3> trouble_;     // where the attempts refused since the last accepted step got stuck

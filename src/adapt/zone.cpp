@@ -33,6 +33,10 @@ void hold_to_boundary(Zone& zone, const Mesh& mesh, Tet t, const std::array<int,
     }
 }
 
+double ratio_at(const std::vector<Vec3>& places, const std::array<int, 4>& v) {
+    return tet_aspect_ratio(places[at(v[0])], places[at(v[1])], places[at(v[2])], places[at(v[3])]);
+}
+
 }  // namespace
 
 void clear(Zone& zone) {
@@ -88,10 +92,9 @@ void find_sizes(Zone& zone, const Snapshot& at_time) {
     for (const Vec3& x : zone.place) zone.size.push_back(target_size(at_time, x));
 }
 
-double aspect_ratio(const Zone& zone, int cell) {
-    const auto& v = zone.corners[at(cell)];
-    return tet_aspect_ratio(zone.place[at(v[0])], zone.place[at(v[1])], zone.place[at(v[2])], zone.place[at(v[3])]);
-}
+double aspect_ratio(const Zone& zone, int cell) { return ratio_at(zone.place, zone.corners[at(cell)]); }
+
+double start_ratio(const Zone& zone, int cell) { return ratio_at(zone.start, zone.corners[at(cell)]); }
 
 void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star) {
     star.clear();

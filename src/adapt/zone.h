@@ -40,6 +40,7 @@ void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
 void find_sizes(Zone& zone, const Snapshot& at_time);
 
 [[nodiscard]] double aspect_ratio(const Zone& zone, int cell);
+[[nodiscard]] double start_ratio(const Zone& zone, int cell);  // its aspect ratio in the mesh
 void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star);
 [[nodiscard]] Freedom freedom(const Zone& zone, int vertex);
 
@@ -51,11 +52,6 @@ void measure(Zone& zone);
 
 /// As for cells: see adapt.h. The zone's places are those of the mesh.
 Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options);
-/// As in adapt.h. `stuck_at` remembers the aspect ratio of cells when nothing helped them: they are left alone until
-/// they have become worse.
-Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, Array<Tet, float>& stuck_at,
-                const AdaptOptions& options);
-
 void write_places(const Zone& zone, Mesh& mesh);
 
 }  // namespace kropla
