@@ -28,8 +28,6 @@ AdaptedMesh adapted_mesh(std::uint64_t seed) {
     a.changes += adapt_to_size(a.after, all_tets(a.after), at);
     a.changes += improve(a.after, all_tets(a.after), at);
     a.changes += optimise_places(a.after, all_tets(a.after));
-    const auto relaxed = relax(a.after, all_vertices(a.after));
-    a.changes.vertices.insert(a.changes.vertices.end(), relaxed.begin(), relaxed.end());
     return a;
 }
 
