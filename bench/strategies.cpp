@@ -26,7 +26,7 @@ namespace {
 
 constexpr double limit = 10;         // of R/r
 constexpr int most_sweeps = 10;      // of smoothing, in a step; it ends where R/r is at most the limit
-constexpr double local_floor = 6;    // [-] R/r: worse cells are cut out where there is no smoothing
+constexpr double local_floor = 8;    // [-] R/r: worse cells are cut out where there is no smoothing
 constexpr double reach_in_sizes = 5;  // around the body, where local remeshing looks
 constexpr double end = 0.01;         // [s]
 constexpr double patience = 60;      // [s] of the processor, after which a way is given up
@@ -121,7 +121,7 @@ void clusters(Mesh& mesh, const Domain& domain, double t, Outcome& outcome) {
         if (mesh.region[c] == surroundings &&
             distance_to_bodies(at, centroid(mesh, c)) < reach_in_sizes * domain.size.surface)
             cells.push_back(c);
-    const AdaptOptions options{.floor = local_floor, .whole_region = false};
+    const AdaptOptions options{.floor = local_floor, .largest_ring = 3, .whole_region = false};
     const Changes sized = adapt_to_size(mesh, cells, at, options);
     cells.insert(cells.end(), sized.cells.begin(), sized.cells.end());
     note_changes(sized, outcome);
