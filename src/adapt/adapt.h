@@ -78,6 +78,9 @@ inline constexpr int longest_ring = 9;
 /// Pulls `from` onto `to`. Nothing if `from` is held by something that the edge does not lie on, or if the worst
 /// aspect ratio after would exceed `worst_allowed`.
 [[nodiscard]] std::optional<Cavity> edge_collapse(const Mesh& mesh, Vertex from, Vertex to, double worst_allowed);
+/// As above, with the ball of `from`: for loops that ask often.
+[[nodiscard]] std::optional<Cavity> edge_collapse(const Mesh& mesh, Vertex from, Vertex to, std::span<const Tet> around,
+                                                  double worst_allowed);
 
 /// A new vertex on the edge, at the best place inside its shell (on a face of the box: within the face). Nothing for
 /// an edge of an interface, or if the worst aspect ratio after would exceed `worst_allowed`.
@@ -86,9 +89,8 @@ inline constexpr int longest_ring = 9;
 // --- Improvement: operators chosen worst-first -------------------------------------------------------------------
 
 struct AdaptOptions {
-    double smooth_above = 4.2;        // [-] R/r: worse cells are smoothed as the mesh moves
-    int relaxations = 2;              // sweeps of relaxation along with it
-    double swap_above = 4.2;          // [-] R/r: worse cells are swapped away where that pays well
+    int relaxations = 2;              // sweeps that equalise volumes as the mesh moves
+    double swap_above = 3.7;          // [-] R/r: worse cells are swapped away where that lowers the energy
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
     double passing = 9.0;             // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for

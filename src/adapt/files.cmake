@@ -1,6 +1,7 @@
 list(APPEND KROPLA_MESH_FILES
     adapt/star.cpp
     adapt/zone.cpp
+    adapt/propose.cpp
     adapt/optimise.cpp
     adapt/smooth.cpp
     adapt/swap.cpp

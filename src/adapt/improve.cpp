@@ -3,10 +3,11 @@
 // Shewchuk 2007], "Aggressive tetrahedral mesh improvement", here cell by cell from a queue, so that work is
 // proportional to the bad cells. It ends, as each step lowers the worst aspect ratio of what it replaces.
 
-#include "adapt/adapt.h"
+#include "adapt/propose.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
+#include <iterator>
 #include <queue>
 
 namespace kropla {
@@ -15,6 +16,7 @@ namespace {
 constexpr double least_gain = 1e-3;
 constexpr double passable_after_swap = 0.96;    // of good_enough: no swap for the energy makes a worse cell
 constexpr double longest_after_collapse = 2.0;  // [target sizes]
+constexpr int most_swap_rounds = 6;             // of those that others have overtaken
 constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -67,16 +69,88 @@ void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
     if (!best || gain(*other) > gain(*best)) best = std::move(other);
 }
 
-bool swap_at(Improvement& work, Tet t, double ratio) {
-    const Mesh& mesh = work.mesh;
-    const bool bad = ratio > work.options.good_enough;
-    const SwapGoal goal = bad ? SwapGoal{} : SwapGoal{true, passable_after_swap * work.options.good_enough};
+/// Which swaps can make a cell flatter than it should be better: an edge at which it is obtuse (a sliver, a wedge), and a
+/// facet under all of whose edges it is not (a cap: the opposite corner stands above the facet).
+struct Promising {
+    std::array<bool, 6> edge{};   // as tet_edges
+    std::array<bool, 4> facet{};
+};
+
+Promising promising_swaps(const Mesh& mesh, Tet t) {
+    const auto& v = mesh.tets[t];
+    const Vec3 &a = mesh.position[v[0]], &b = mesh.position[v[1]], &c = mesh.position[v[2]], &d = mesh.position[v[3]];
+    const std::array<Vec3, 4> normal = {cross(c - b, d - b), cross(d - a, c - a), cross(b - a, d - a),
+                                        cross(c - a, b - a)};  // outwards, by the opposite corner
+    Promising promising;
+    promising.facet.fill(true);
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto [i, j] = tet_edges[5 - k];  // the facets at edge k are opposite the ends of the other edge
+        if (dot(normal[at(i)], normal[at(j)]) <= 0) continue;
+        promising.edge[k] = true;
+        promising.facet[at(i)] = promising.facet[at(j)] = false;
+    }
+    return promising;
+}
+
+/// The swap at a passable cell that lowers the energy most.
+std::optional<Cavity> best_for_energy(const Mesh& mesh, Tet t, double limit) {
+    const SwapGoal goal{true, limit};
+    const Promising promising = promising_swaps(mesh, t);
     std::optional<Cavity> best;
-    for (int i = 0; i < 4; ++i) keep_better(best, face_removal(mesh, {t, i}, goal));
+    for (int i = 0; i < 4; ++i)
+        if (promising.facet[at(i)]) keep_better(best, face_removal(mesh, {t, i}, goal));
+    Shell around;
+    for (std::size_t k = 0; k < 6; ++k) {
+        if (!promising.edge[k]) continue;
+        const Edge e{mesh.tets[t][at(tet_edges[k][0])], mesh.tets[t][at(tet_edges[k][1])]};
+        shell(mesh, e, t, around);
+        keep_better(best, edge_removal(mesh, around, e, goal));
+    }
+    return best;
+}
+
+/// Swaps at passable cells, in the order given; where a swap has been overtaken by another, and at new cells, again.
+void swap_for_energy(Improvement& work, std::span<const Tet> cells) {
+    const Mesh& mesh = work.mesh;
+    const double limit = passable_after_swap * work.options.good_enough;
+    const auto is_passable = [&](Tet t) {
+        if (!alive(mesh, t)) return false;
+        const double ratio = aspect_ratio(mesh, t);
+        return ratio > work.options.swap_above && ratio <= work.options.good_enough;
+    };
+    std::vector<Tet> passable;
+    std::ranges::copy_if(cells, std::back_inserter(passable), is_passable);
+    for (int round = 0; round < most_swap_rounds && !passable.empty(); ++round) {
+        auto proposals =
+            propose_all(passable.size(), [&](std::size_t i) { return best_for_energy(mesh, passable[i], limit); });
+        Replaced replaced;
+        std::vector<Tet> again;
+        for (std::size_t i = 0; i < passable.size(); ++i) {
+            if (!proposals[i]) continue;
+            if (replaced.outdates(*proposals[i])) {
+                again.push_back(passable[i]);
+                continue;
+            }
+            replaced.add(*proposals[i]);
+            const std::size_t known = work.changes.cells.size();
+            carry_out(work.mesh, *proposals[i], work.changes);
+            ++work.changes.swaps;
+            again.insert(again.end(), work.changes.cells.begin() + static_cast<std::ptrdiff_t>(known),
+                         work.changes.cells.end());
+        }
+        std::erase_if(again, [&](Tet t) { return !is_passable(t); });
+        passable = std::move(again);
+    }
+}
+
+bool swap_at(Improvement& work, Tet t) {
+    const Mesh& mesh = work.mesh;
+    std::optional<Cavity> best;
+    for (int i = 0; i < 4; ++i) keep_better(best, face_removal(mesh, {t, i}));
     for (const auto& [i, j] : tet_edges) {
         const Edge e{mesh.tets[t][at(i)], mesh.tets[t][at(j)]};
         shell(mesh, e, t, work.around);
-        keep_better(best, edge_removal(mesh, work.around, e, goal));
+        keep_better(best, edge_removal(mesh, work.around, e));
     }
     if (!best) return false;
     work.carry_out(*best);
@@ -110,12 +184,15 @@ bool makes_long_edge(const Improvement& work, const Cavity& cavity, Vertex to) {
 bool collapse_at(Improvement& work, Tet t, double ratio) {
     const double bound = (1 - least_gain) * ratio;
     std::optional<Cavity> best;
-    for (Vertex from : work.mesh.tets[t])
+    std::vector<Tet> around;
+    for (Vertex from : work.mesh.tets[t]) {
+        ball(work.mesh, from, around);
         for (Vertex to : work.mesh.tets[t]) {
             if (from == to) continue;
-            auto cavity = edge_collapse(work.mesh, from, to, best ? best->worst_after : bound);
+            auto cavity = edge_collapse(work.mesh, from, to, around, best ? best->worst_after : bound);
             if (cavity && !makes_long_edge(work, *cavity, to)) best = std::move(cavity);
         }
+    }
     if (!best) return false;
     work.carry_out(*best);
     ++work.changes.collapses;
@@ -167,22 +244,24 @@ void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
 }
 
 Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
-    Improvement work{mesh, at_time, options, BadCells(mesh, std::min(options.swap_above, options.good_enough))};
+    Improvement work{mesh, at_time, options, BadCells(mesh, options.good_enough)};
+    swap_for_energy(work, cells);
     for (Tet t : cells) work.bad.add(t);
+    const std::size_t swapped = work.changes.cells.size();
     for (int round = 0; round < most_rounds; ++round) {
         std::vector<Tet> stuck;
         bool progress = false;
         while (const auto worst = work.bad.take()) {
             const auto [t, ratio] = *worst;
-            const bool bad = ratio > options.good_enough;
-            if (swap_at(work, t, ratio)) progress = true;
-            else if (!bad) continue;
-            else if (smooth_at(work, t) || collapse_at(work, t, ratio) || split_at(work, t, ratio)) progress = true;
+            if (swap_at(work, t) || smooth_at(work, t) || collapse_at(work, t, ratio) || split_at(work, t, ratio))
+                progress = true;
             else stuck.push_back(t);
         }
         if (!progress || stuck.empty()) break;
         for (Tet t : stuck) work.bad.add(t);
     }
+    const std::vector<Tet> added(work.changes.cells.begin() + static_cast<std::ptrdiff_t>(swapped), work.changes.cells.end());
+    swap_for_energy(work, added);
     return std::move(work.changes);
 }
 

@@ -4,7 +4,7 @@
 // follows the cells' size, so that cells stream past the body instead of being squeezed and torn; vertices on the
 // faces of the box slide along; and a body reaches no farther than a few of its own sizes.
 
-#include "adapt/adapt.h"
+#include "adapt/for_all.h"
 #include "adapt/zone.h"
 #include "domain/layer_room.h"
 #include "generate/layers.h"
@@ -18,7 +18,7 @@
 namespace kropla {
 namespace {
 
-constexpr double reach_in_body_sizes = 8.0;     // how far a displacement is felt
+constexpr double reach_in_body_sizes = 8.0;    // how far a displacement is felt
 constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -64,10 +64,8 @@ double distance_to_body(const Snapshot& at, std::size_t body, const Vec3& x) {
     return std::max(d - layer_thickness(at, body, false, closest_point(shape, x)), 0.0);
 }
 
-/// The displacement of the point `x` of the surroundings; nothing if it is out of every body's reach. None goes
-/// across a wall.
-std::optional<Vec3> spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) {
-    bool reached = false;
+/// The displacement of the point `x` of the surroundings. None goes across a wall.
+Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) {
     double total = 0;
     double least = std::numeric_limits<double>::infinity();
     Vec3 sum;
@@ -75,12 +73,10 @@ std::optional<Vec3> spread(std::span<const Travel> travels, const Snapshot& at, 
         const double d = distance_to_body(at, i, x);
         if (d == 0) return travels[i].displacement(x);
         const double share = felt(at.size, d, travels[i].reach);
-        reached |= share > 0;
         total += 1 / (d * d);
         sum += share / (d * d) * travels[i].displacement(x);
         least = std::min(least, d);
     }
-    if (!reached) return std::nullopt;
     Vec3 u = sum / total;
     for (int axis = 0; axis < 3; ++axis) {
         const double y = std::max(0.0, std::min(x[axis] - at.box.min[axis], at.box.max[axis] - x[axis]));
@@ -131,13 +127,11 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displac
     return positive_share(e, de, least);
 }
 
-using Goals = std::vector<std::optional<Vec3>>;  // per vertex of a zone; none: it stays
-
-/// Adds the bodies' vertices, and where they go: rigidly with the body, but for the columns of layers, which stand on
+/// Adds the bodies' vertices and returns where they go: rigidly with the body, but for the columns of layers, which stand on
 /// their wall at the end as high as the gaps there let them.
-Goals add_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
+std::vector<Vec3> add_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
                  std::span<const std::vector<Vertex>> bodies, Zone& zone) {
-    Goals goals;
+    std::vector<Vec3> goals;
     for (std::size_t i = 0; i < bodies.size(); ++i)
         for (Vertex v : bodies[i]) {
             add_held(zone, mesh, v);
@@ -146,7 +140,7 @@ Goals add_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Trave
     for (const PrismLayer& layer : mesh.layers) {
         std::vector<Vec3> wall;
         for (int column = 0; column < count_columns(layer); ++column)
-            wall.push_back(*goals[at(zone.number(column_vertex(layer, column, 0)))]);
+            wall.push_back(goals[at(zone.number(column_vertex(layer, column, 0)))]);
         const auto places = column_places(layer, wall, at_end);
         for (std::size_t i = 0; i < places.size(); ++i)
             if (i % static_cast<std::size_t>(layer.count + 1) != 0) goals[at(zone.number(layer.columns[i]))] = places[i];
@@ -165,26 +159,36 @@ std::optional<Tet> tet_beside(const Mesh& mesh, std::span<const Vertex> body) {
     return std::nullopt;
 }
 
+/// Is `x` so far from all bodies that none of them can move it? Told from the balls that hold them.
+bool out_of_reach(std::span<const Travel> travels, const Vec3& x) {
+    return std::ranges::none_of(travels, [&](const Travel& travel) {
+        const Vec3& axes = travel.from.semi_axes;
+        return distance(travel.from.centre, x) < travel.reach + std::max({axes.x, axes.y, axes.z});
+    });
+}
+
 /// Gathers the bodies' vertices, the surroundings' tets with a vertex in reach of a body, found outwards from the
 /// bodies, and where the vertices are to go.
 void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
                     std::span<const std::vector<Vertex>> bodies, Zone& zone) {
     clear(zone);
-    Goals goals = add_bodies(mesh, at_end, travels, bodies, zone);
+    const auto goals = add_bodies(mesh, at_end, travels, bodies, zone);
     for (const auto& body : bodies)
         if (const auto t = tet_beside(mesh, body)) add_cell(zone, mesh, *t);
+    std::vector<char> held(goals.size(), false);
     for (std::size_t i = 0; i < zone.cells.size(); ++i) {
-        for (std::size_t v = goals.size(); v < zone.vertices.size(); ++v) {
-            const auto way = spread(travels, at_start, zone.start[v]);
-            goals.push_back(way ? std::optional(zone.start[v] + *way) : std::nullopt);
-        }
-        if (std::ranges::none_of(zone.corners[i], [&](int v) { return goals[at(v)].has_value(); })) continue;
+        for (std::size_t v = held.size(); v < zone.vertices.size(); ++v)
+            held.push_back(out_of_reach(travels, zone.start[v]));
+        if (std::ranges::all_of(zone.corners[i], [&](int v) { return held[at(v)] != 0; })) continue;
         for (Tet n : mesh.neighbour[zone.cells[i]])
             if (n.exists() && mesh.region[n] == surroundings) add_cell(zone, mesh, n);
     }
     close(zone, mesh);
-    for (std::size_t v = 0; v < zone.vertices.size(); ++v)
-        if (goals[v]) zone.place[v] = *goals[v];
+    std::ranges::copy(goals, zone.place.begin());
+    for_all(zone.vertices.size() - goals.size(), [&](std::size_t i) {
+        const std::size_t v = goals.size() + i;
+        if (held[v] == 0) zone.place[v] += spread(travels, at_start, zone.start[v]);
+    });
 }
 
 }  // namespace
@@ -210,15 +214,15 @@ MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::
                          double t1, Zone& zone) {
     constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
     gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
+    std::vector<double> safe(zone.cells.size());
+    for_all(safe.size(), [&](std::size_t c) { safe[c] = safe_fraction(zone, static_cast<int>(c), least_volume_kept); });
     MoveReport report;
     report.fraction = 1;
-    for (int cell = 0; cell < static_cast<int>(zone.cells.size()); ++cell) {
-        const double f = safe_fraction(zone, cell, least_volume_kept);
-        if (f < report.fraction) {
-            report.fraction = f;
-            report.limiting = zone.cells[at(cell)];
+    for (std::size_t c = 0; c < safe.size(); ++c)
+        if (safe[c] < report.fraction) {
+            report.fraction = safe[c];
+            report.limiting = zone.cells[c];
         }
-    }
     report.arrived = report.fraction == 1;
     if (report.arrived) write_places(zone, mesh);
     return report;

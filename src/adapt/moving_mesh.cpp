@@ -1,5 +1,6 @@
 #include "adapt/moving_mesh.h"
 
+#include "adapt/for_all.h"
 #include "generate/layers.h"
 #include "mesh/quality.h"
 
@@ -13,8 +14,7 @@ namespace {
 constexpr int most_legs = 8;             // into which the motion of a step is cut
 constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
-constexpr double worse_in_step = 1.02;   // a cell that gets worse by this has a chance of being improved
-constexpr std::size_t turns = 8;         // steps after which any other cell is tried again
+constexpr double worse_in_step = 1.05;   // a cell that gets worse by this has a chance of being improved
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
 constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
@@ -145,10 +145,12 @@ std::optional<Refusal> MovingMesh::refusal() const {
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;
-    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
-        if (const double safe = safe_fraction(zone_, static_cast<int>(c), least_volume_kept); safe < 1)
+    std::vector<double> safe(zone_.cells.size());
+    for_all(safe.size(), [&](std::size_t c) { safe[c] = safe_fraction(zone_, static_cast<int>(c), least_volume_kept); });
+    for (std::size_t c = 0; c < safe.size(); ++c)
+        if (safe[c] < 1)
             return Refusal{describe(before_, zone_.cells[c], "would be turned inside out on its way"), zone_.cells[c],
-                           safe * (target_time_ - time_)};
+                           safe[c] * (target_time_ - time_)};
     return std::nullopt;
 }
 
@@ -207,6 +209,7 @@ const Changes& MovingMesh::accept() {
 
     const Snapshot at_time = snapshot(domain_, time_);
     Changes& changes = statistics_.remeshed;
+    zone_.turn = std::hash<double>{}(time_);  // from the time, so that a run that is resumed goes the same way
     changes = adapt_to_size(reference_, zone_, at_time, options_);
     std::vector<Tet> poor = poor_cells();
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
@@ -219,17 +222,14 @@ const Changes& MovingMesh::accept() {
 }
 
 /// The cells that are to be improved if they can: all bad ones; of those that are passable, the ones that have become
-/// worse in this step, and some others, as most of them have been tried in vain before. Which others follows from the
-/// time, so that a run that is resumed makes the same choice.
+/// worse in this step or have their turn.
 std::vector<Tet> MovingMesh::poor_cells() const {
-    const auto turn = std::hash<double>{}(time_);
     std::vector<Tet> poor;
     for (std::size_t c = 0; c < zone_.cells.size(); ++c) {
         const double ratio = zone_.ratio[c];
         if (ratio <= options_.swap_above) continue;
         const Tet t = zone_.cells[c];
-        const bool has_turn = (static_cast<std::size_t>(t.value) + turn) % turns == 0;
-        if (ratio > options_.good_enough || has_turn || ratio > worse_in_step * start_ratio(zone_, static_cast<int>(c)))
+        if (ratio > options_.good_enough || has_turn(zone_, t.value) || ratio > worse_in_step * start_ratio(zone_, static_cast<int>(c)))
             poor.push_back(t);
     }
     return poor;

@@ -4,11 +4,15 @@
 // is bad still is optimised vertex by vertex. Weighting as in the centroidal patch tessellation of [Chen, Holst 2011],
 // "Efficient mesh optimization schemes based on Optimal Delaunay Triangulations".
 
+#include "adapt/for_all.h"
 #include "adapt/zone.h"
 
 #include "base/tetrahedron.h"
 
 #include <algorithm>
+#include <atomic>
+#include <span>
+#include <unordered_set>
 
 namespace kropla {
 namespace {
@@ -24,16 +28,16 @@ struct Pull {
 
 void equalise_volumes(Zone& zone) {
     std::vector<Pull> pulls(zone.cells.size());
-    for (std::size_t c = 0; c < zone.cells.size(); ++c) {
+    for_all(zone.cells.size(), [&](std::size_t c) {
         const auto& v = zone.corners[c];
         const Vec3 &p = zone.place[at(v[0])], &q = zone.place[at(v[1])], &r = zone.place[at(v[2])],
                    &s = zone.place[at(v[3])];
         const double size = zone.size[at(v[0])] + zone.size[at(v[1])] + zone.size[at(v[2])] + zone.size[at(v[3])];
         const double weight = determinant(q - p, r - p, s - p) / (size * size * size);
         pulls[c] = {weight / 4 * (p + q + r + s), weight};
-    }
-    for (std::size_t v = 0; v < zone.vertices.size(); ++v) {
-        if (zone.axes[v] == 0) continue;
+    });
+    for_all(zone.vertices.size(), [&](std::size_t v) {
+        if (zone.axes[v] == 0) return;
         Pull sum{};
         for (int i = zone.ball_begin[v]; i < zone.ball_begin[v + 1]; ++i) {
             const Pull& pull = pulls[at(zone.ball[at(i)])];
@@ -42,7 +46,7 @@ void equalise_volumes(Zone& zone) {
         }
         const Vec3 way = sum.moment / sum.weight - zone.place[v];
         zone.place[v] += relaxation * restricted(way, freedom(zone, static_cast<int>(v)));
-    }
+    });
 }
 
 void measure_ball(Zone& zone, int v) {
@@ -76,11 +80,52 @@ int retreat(Zone& zone, const std::vector<Vec3>& places, double above) {
     return count;
 }
 
+std::span<const int> ball_of(const Zone& zone, int v) {
+    return std::span(zone.ball).subspan(at(zone.ball_begin[at(v)]),
+                                        at(zone.ball_begin[at(v) + 1] - zone.ball_begin[at(v)]));
+}
+
+/// Takes those of `vertices` out, in order, that share no cell with each other.
+std::vector<int> take_apart(const Zone& zone, std::vector<int>& vertices) {
+    std::vector<int> apart, rest;
+    std::unordered_set<int> cells;
+    for (int v : vertices) {
+        const auto ball = ball_of(zone, v);
+        const bool is_near = std::ranges::any_of(ball, [&](int c) { return cells.contains(c); });
+        (is_near ? rest : apart).push_back(v);
+        if (!is_near) cells.insert(ball.begin(), ball.end());
+    }
+    vertices = std::move(rest);
+    return apart;
+}
+
+/// Moves the vertices of bad cells, each once, to their best places: at once those that share no cell.
+int optimise_worst(Zone& zone, const AdaptOptions& options) {
+    const auto is_bad = [&](int c) { return zone.ratio[at(c)] > options.good_enough; };
+    std::atomic<int> moved = 0;
+    auto vertices = vertices_of_worse(zone, options.good_enough);
+    while (!vertices.empty()) {
+        const auto apart = take_apart(zone, vertices);
+        for_all(apart.size(), [&](std::size_t i) {
+            std::vector<StarFacet> star;
+            star_of_ball(zone, apart[i], star);
+            Vec3& place = zone.place[at(apart[i])];
+            const Place best = best_place(star, place, freedom(zone, apart[i]), 0.9 * options.good_enough);
+            if (best.x == place) return;
+            place = best.x;
+            measure_ball(zone, apart[i]);
+            ++moved;
+        }, 16);
+        std::erase_if(vertices, [&](int v) { return std::ranges::none_of(ball_of(zone, v), is_bad); });
+    }
+    return moved;
+}
+
 }  // namespace
 
 void measure(Zone& zone) {
     zone.ratio.resize(zone.cells.size());
-    for (std::size_t c = 0; c < zone.cells.size(); ++c) zone.ratio[c] = aspect_ratio(zone, static_cast<int>(c));
+    for_all(zone.cells.size(), [&](std::size_t c) { zone.ratio[c] = aspect_ratio(zone, static_cast<int>(c)); });
 }
 
 int optimise_places(Zone& zone, const AdaptOptions& options) {
@@ -89,17 +134,7 @@ int optimise_places(Zone& zone, const AdaptOptions& options) {
     measure(zone);
     for (int i = 0; i < most_retreats && retreat(zone, moved, options.good_enough) > 0; ++i) {}
 
-    int optimised = 0;
-    std::vector<StarFacet> star;
-    for (int v : vertices_of_worse(zone, options.good_enough)) {
-        star_of_ball(zone, v, star);
-        const Place best = best_place(star, zone.place[at(v)], freedom(zone, v), 0.9 * options.good_enough);
-        if (best.x == zone.place[at(v)]) continue;
-        zone.place[at(v)] = best.x;
-        measure_ball(zone, v);
-        ++optimised;
-    }
-    return optimised;
+    return optimise_worst(zone, options);
 }
 
 Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {

@@ -2,6 +2,7 @@
 // the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
 
 #include "adapt/adapt.h"
+#include "adapt/propose.h"
 #include "adapt/zone.h"
 #include "base/tetrahedron.h"
 #include "mesh/cells.h"
@@ -42,14 +43,21 @@ bool may_collapse(const Mesh& mesh, Vertex from, Vertex to, std::span<const Tet>
 }  // namespace
 
 std::optional<Cavity> edge_collapse(const Mesh& mesh, Vertex from, Vertex to, double worst_allowed) {
-    Cavity cavity;
-    ball(mesh, from, cavity.removed);
-    if (!may_collapse(mesh, from, to, cavity.removed)) return std::nullopt;
-    for (Tet t : cavity.removed) {
+    return edge_collapse(mesh, from, to, ball(mesh, from), worst_allowed);
+}
+
+std::optional<Cavity> edge_collapse(const Mesh& mesh, Vertex from, Vertex to, std::span<const Tet> around,
+                                    double worst_allowed) {
+    if (!may_collapse(mesh, from, to, around)) return std::nullopt;
+    double worst = 0;
+    for (Tet t : around) {
         if (corner_of(mesh, t, to) >= 0) continue;
-        cavity.worst_after = std::max(cavity.worst_after, aspect_ratio_of(mesh, with_replaced(mesh, t, from, to)));
-        if (cavity.worst_after > worst_allowed || cavity.worst_after == infinity) return std::nullopt;
+        worst = std::max(worst, aspect_ratio_of(mesh, with_replaced(mesh, t, from, to)));
+        if (worst > worst_allowed || worst == infinity) return std::nullopt;
     }
+    Cavity cavity;
+    cavity.removed.assign(around.begin(), around.end());
+    cavity.worst_after = worst;
     for (Tet t : cavity.removed)
         if (corner_of(mesh, t, to) < 0)
             cavity.added.push_back({with_replaced(mesh, t, from, to), mesh.region[t], mesh.patch[t]});
@@ -136,26 +144,42 @@ std::optional<Tet> cell_at(const Mesh& mesh, const WrongEdge& wrong) {
     const auto has_edge = [&](Tet t) {
         return alive(mesh, t) && corner_of(mesh, t, wrong.edge.a) >= 0 && corner_of(mesh, t, wrong.edge.b) >= 0;
     };
+    if (!alive(mesh, wrong.edge.a) || !alive(mesh, wrong.edge.b)) return std::nullopt;
     if (has_edge(wrong.cell)) return wrong.cell;
     const auto around = ball(mesh, wrong.edge.a);
     const auto found = std::ranges::find_if(around, has_edge);
     return found == around.end() ? std::nullopt : std::optional(*found);
 }
 
-bool makes_long_edge(const Cavity& cavity, Vertex to, const EdgeMeasure& measure, double longest) {
-    for (const NewTet& t : cavity.added)
-        for (Vertex v : t.vertices)
-            if (v != to && measure.ratio({v, to}) > longest) return true;
+/// The ball of a vertex while the mesh still has the cells of the zone, which knows most balls.
+void ball_at_start(const Mesh& mesh, const Zone& zone, Vertex v, std::vector<Tet>& tets) {
+    const int number = zone.number(v);
+    if (number < 0 || zone.axes[at(number)] == 0) return ball(mesh, v, tets);
+    tets.clear();
+    for (int i = zone.ball_begin[at(number)]; i < zone.ball_begin[at(number) + 1]; ++i)
+        tets.push_back(zone.cells[at(zone.ball[at(i)])]);
+}
+
+/// Would an edge from `to` to a neighbour of `from` become too long?
+bool makes_long_edge(const Mesh& mesh, std::span<const Tet> around, Vertex from, Vertex to, const EdgeMeasure& measure,
+                     double longest) {
+    for (Tet t : around)
+        for (Vertex v : mesh.tets[t])
+            if (v != from && v != to && measure.ratio({v, to}) > longest) return true;
     return false;
 }
 
-/// The better of the two ways to collapse the edge, if one is allowed.
-std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, const EdgeMeasure& measure, const AdaptOptions& o) {
+/// The better of the two ways to collapse the edge, if one is allowed. `ball_of` finds the ball of a vertex.
+template <class BallOf>
+std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, const EdgeMeasure& measure, const AdaptOptions& o,
+                                          BallOf ball_of) {
     std::optional<Cavity> best;
+    std::vector<Tet> around;
     for (const auto& [from, to] : {std::pair(e.a, e.b), std::pair(e.b, e.a)}) {
-        auto cavity = edge_collapse(mesh, from, to, best ? best->worst_after : infinity);
+        ball_of(from, around);
+        if (makes_long_edge(mesh, around, from, to, measure, 0.95 * o.split_above)) continue;
+        auto cavity = edge_collapse(mesh, from, to, around, best ? best->worst_after : infinity);
         if (!cavity || cavity->worst_after > std::max(o.passing, cavity->worst_before)) continue;
-        if (makes_long_edge(*cavity, to, measure, 0.95 * o.split_above)) continue;
         best = std::move(cavity);
     }
     return best;
@@ -171,17 +195,31 @@ std::optional<Cavity> split(const Mesh& mesh, Edge e, Tet t, const AdaptOptions&
 Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options) {
     Changes changes;
     const EdgeMeasure measure(mesh, zone, at_time);
-    for (const WrongEdge& wrong : wrong_edges(zone, options)) {
-        const auto [a, b] = wrong.edge;
-        if (!alive(mesh, a) || !alive(mesh, b) || measure.ratio(wrong.edge) != wrong.ratio) continue;
-        const auto cell = cell_at(mesh, wrong);
-        if (!cell) continue;
-        const bool is_long = wrong.ratio > 1;
-        const auto cavity = is_long ? split(mesh, wrong.edge, *cell, options)
-                                    : collapse_either_way(mesh, wrong.edge, measure, options);
+    const auto wrong = wrong_edges(zone, options);
+    const auto first_long = std::ranges::find_if(wrong, [](const WrongEdge& w) { return w.ratio > 1; });
+    const auto shorts = static_cast<std::size_t>(first_long - wrong.begin());
+    const auto collapse = [&](std::size_t i, auto ball_of) {
+        return collapse_either_way(mesh, wrong[i].edge, measure, options, ball_of);
+    };
+    const auto in_zone = [&](Vertex v, std::vector<Tet>& tets) { ball_at_start(mesh, zone, v, tets); };
+    const auto in_mesh = [&](Vertex v, std::vector<Tet>& tets) { ball(mesh, v, tets); };
+    auto proposals = propose_all(shorts, [&](std::size_t i) { return collapse(i, in_zone); });
+    Replaced replaced;
+    for (std::size_t i = 0; i < shorts; ++i) {
+        auto& cavity = proposals[i];
+        if (cavity && replaced.outdates(*cavity)) cavity = cell_at(mesh, wrong[i]) ? collapse(i, in_mesh) : std::nullopt;
+        if (!cavity) continue;
+        replaced.add(*cavity);
+        carry_out(mesh, *cavity, changes);
+        ++changes.collapses;
+    }
+    for (std::size_t i = shorts; i < wrong.size(); ++i) {
+        const auto cell = cell_at(mesh, wrong[i]);
+        if (!cell || measure.ratio(wrong[i].edge) != wrong[i].ratio) continue;
+        const auto cavity = split(mesh, wrong[i].edge, *cell, options);
         if (!cavity) continue;
         carry_out(mesh, *cavity, changes);
-        ++(is_long ? changes.splits : changes.collapses);
+        ++changes.splits;
     }
     return changes;
 }

@@ -1,5 +1,6 @@
 #include "adapt/zone.h"
 
+#include "adapt/for_all.h"
 #include "base/tetrahedron.h"
 #include "mesh/cells.h"
 
@@ -38,6 +39,11 @@ double ratio_at(const std::vector<Vec3>& places, const std::array<int, 4>& v) {
 }
 
 }  // namespace
+
+bool has_turn(const Zone& zone, int name) {
+    constexpr std::size_t turns = 8;
+    return !zone.turn || (at(name) + *zone.turn) % turns == 0;
+}
 
 void clear(Zone& zone) {
     zone.cells.clear();
@@ -88,8 +94,8 @@ void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
 }
 
 void find_sizes(Zone& zone, const Snapshot& at_time) {
-    zone.size.clear();
-    for (const Vec3& x : zone.place) zone.size.push_back(target_size(at_time, x));
+    zone.size.resize(zone.place.size());
+    for_all(zone.place.size(), [&](std::size_t v) { zone.size[v] = target_size(at_time, zone.place[v]); });
 }
 
 double aspect_ratio(const Zone& zone, int cell) { return ratio_at(zone.place, zone.corners[at(cell)]); }

@@ -19,9 +19,14 @@ struct Zone {
     std::vector<double> size;                 // per vertex: the target size there [m]
     std::vector<int> ball_begin, ball;        // per vertex, and one more: where its cells stand in `ball`
     std::vector<double> ratio;                // per cell: its aspect ratio at `place`
+    std::optional<std::size_t> turn;          // see has_turn
     Numbering<Vertex> number;                 // of `vertices`
     Numbering<Tet> cell_number;
 };
+
+/// Most cells and edges that could be better have been tried in vain before: those that have not become worse are tried
+/// again by turns only, by their `name`; always if the zone has no `turn`.
+[[nodiscard]] bool has_turn(const Zone& zone, int name);
 
 /// Empties the zone.
 void clear(Zone& zone);

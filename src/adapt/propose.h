@@ -1,0 +1,31 @@
+#pragma once
+
+#include "adapt/adapt.h"
+
+#include <algorithm>
+#include <functional>
+#include <unordered_set>
+
+namespace kropla {
+
+/// What `propose` says for 0 ... count - 1, asked by several threads at once on a mesh that nothing changes meanwhile: the
+/// same for any number of threads.
+[[nodiscard]] std::vector<std::optional<Cavity>> propose_all(
+    std::size_t count, const std::function<std::optional<Cavity>(std::size_t)>& propose);
+
+/// Cells that have been replaced since proposals were made: a proposal that would replace one of them is out of date, all
+/// others are as good as they were.
+class Replaced {
+public:
+    void add(const Cavity& cavity) {
+        for (Tet t : cavity.removed) cells_.insert(t.value);
+    }
+    [[nodiscard]] bool outdates(const Cavity& cavity) const {
+        return std::ranges::any_of(cavity.removed, [&](Tet t) { return cells_.contains(t.value); });
+    }
+
+private:
+    std::unordered_set<std::int32_t> cells_;
+};
+
+}  // namespace kropla
