@@ -203,5 +203,90 @@ TEST(MovingMesh, SameInputSameMeshes) {
     EXPECT_EQ(run(), run());
 }
 
+/// An attempt up to `t`; returns whether it is refused.
+bool attempt(MovingMesh& moving, double t) {
+    moving.refine();
+    moving.move_boundary(t);
+    moving.optimise();
+    return moving.refusal().has_value();
+}
+
+void expect_three_equal_meshes(const MovingMesh& moving) {
+    EXPECT_EQ(moving.before(), moving.reference());
+    EXPECT_EQ(moving.current(), moving.reference());
+}
+
+TEST(MovingMesh, AStepBeginsWithThreeEqualMeshes) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Domain domain = crossing_sphere();
+        MovingMesh moving(domain, improved_mesh(domain, seed), 0);
+        int remeshed = 0;
+        for (int i = 0; i < 8; ++i) {
+            moving.begin_step();
+            ASSERT_NO_FATAL_FAILURE(expect_three_equal_meshes(moving)) << "step " << i;
+            ASSERT_FALSE(attempt(moving, moving.time() + 0.1));
+            remeshed += moving.accept().cells_replaced;
+        }
+        moving.begin_step();
+        expect_three_equal_meshes(moving);
+        EXPECT_GT(remeshed, 100);
+    }
+}
+
+TEST(MovingMesh, AfterRefusalsTooAStepBeginsWithThreeEqualMeshes) {
+    const Domain domain = crossing_sphere();
+    MovingMesh moving(domain, improved_mesh(domain, 1), 0);
+    int refined = 0;
+    for (int i = 0; i < 3; ++i) {
+        const Mesh reference = moving.reference();
+        for (int refusals = 0; refusals < 3; ++refusals) {  // the later ones after refine() changed connectivity
+            moving.begin_step();
+            ASSERT_TRUE(attempt(moving, moving.time() + 0.95));
+            refined += moving.statistics().refined.cells_replaced;
+            EXPECT_EQ(moving.before().tets, moving.current().tets);
+            moving.refuse();
+            moving.begin_step();
+            expect_three_equal_meshes(moving);
+            EXPECT_EQ(moving.reference(), reference);
+        }
+        ASSERT_FALSE(attempt(moving, moving.time() + 0.02));
+        moving.accept();
+        moving.begin_step();
+        expect_three_equal_meshes(moving);
+    }
+    EXPECT_GT(refined, 0);
+}
+
+/// How often a step over `way` [m] of the crossing sphere's is refused before it succeeds, at the same dt.
+int refusals_of_a_step(std::uint64_t seed, double way, SizeField size) {
+    Domain domain = crossing_sphere();
+    domain.size = size;
+    const double speed = norm(Vec3{0.2, -0.1, 2});  // all of its way, in a time of 1
+    MovingMesh moving(domain, improved_mesh(domain, seed), 0);
+    for (int refusals = 0; refusals < 3; ++refusals) {
+        moving.begin_step();
+        if (!attempt(moving, way / speed)) {
+            moving.accept();
+            EXPECT_EQ(verify(moving.reference()), "");
+            EXPECT_LE(worst_of(moving.reference()), AdaptOptions{}.floor);
+            return refusals;
+        }
+        moving.refuse();
+    }
+    return 3;
+}
+
+TEST(MovingMesh, LargeStepsAreNotRefused) {
+    const double radius = 0.5;
+    for (const SizeField& size : {SizeField{0.35, 0.4, 0.8}, SizeField{0.17, 0.3, 0.8}})
+        for (std::uint64_t seed = 1; seed <= 3; ++seed)
+            for (double way : {2 * size.surface, radius}) {
+                SCOPED_TRACE("surface size " + std::to_string(size.surface) + ", seed " + std::to_string(seed));
+                EXPECT_EQ(refusals_of_a_step(seed, way, size), 0) << "way " << way;
+            }
+    EXPECT_EQ(refusals_of_a_step(1, 3 * 0.17, {0.17, 0.3, 0.8}), 0) << "three surface sizes";
+}
+
 }  // namespace
 }  // namespace kropla

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kropla {
 namespace {
@@ -121,17 +122,35 @@ TEST(EdgeRemoval, Refuses) {
     EXPECT_FALSE(remove_axis(bent)) << "a tet would turn over";
 }
 
-/// The least worst ratio over all triangulations of the ring's polygon i ... j.
-double best_by_trying_all(const Mesh& mesh, std::span<const Vertex> ring, std::size_t i, std::size_t j) {
+/// What a set of tets is worth by the goal: with `a` and `b` what two parts of it are.
+double together(SwapGoal goal, double a, double b) { return goal.by_energy ? a + b : std::max(a, b); }
+
+/// Its worst aspect ratio or its energy, V (R/r)^4; infinite above the limit.
+double worth(SwapGoal goal, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const double ratio = tet_aspect_ratio(a, b, c, d);
+    if (ratio > goal.limit) return std::numeric_limits<double>::infinity();
+    return goal.by_energy ? tet_volume(a, b, c, d) * std::pow(ratio, 4) : ratio;
+}
+
+double energy(const Mesh& mesh, std::span<const Tet> tets) {
+    double sum = 0;
+    for (Tet t : tets) sum += volume(mesh, t) * std::pow(aspect_ratio(mesh, t), 4);
+    return sum;
+}
+
+/// The best over all triangulations of the ring's polygon i ... j.
+double best_by_trying_all(const Mesh& mesh, std::span<const Vertex> ring, std::size_t i, std::size_t j,
+                          SwapGoal goal = {}) {
     if (j == i + 1) return 0;
     const Vec3 a = mesh.position[axis.a], b = mesh.position[axis.b];
     const Vec3 p = mesh.position[ring[i]], r = mesh.position[ring[j]];
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t k = i + 1; k < j; ++k) {
         const Vec3 q = mesh.position[ring[k]];
-        const double here = std::max(tet_aspect_ratio(p, q, r, b), tet_aspect_ratio(q, p, r, a));
-        best = std::min(best, std::max({here, best_by_trying_all(mesh, ring, i, k),
-                                        best_by_trying_all(mesh, ring, k, j)}));
+        const double here = together(goal, worth(goal, p, q, r, b), worth(goal, q, p, r, a));
+        const double sides = together(goal, best_by_trying_all(mesh, ring, i, k, goal),
+                                      best_by_trying_all(mesh, ring, k, j, goal));
+        best = std::min(best, together(goal, sides, here));
     }
     return best;
 }
@@ -172,6 +191,67 @@ TEST(EdgeRemoval, FindsTheBestTriangulationOfTheRing) {
     }
     EXPECT_GE(done, 100);
     EXPECT_GE(refused, 100);
+}
+
+/// As expect_good_swap, for a swap by energy: it falls by a twentieth at least, and no cell is above the limit.
+void expect_good_energy_swap(Mesh& mesh, const Cavity& cavity, double limit) {
+    const Properties shape = properties(mesh);
+    const double before = energy(mesh, cavity.removed);
+    const auto added = replace_cells(mesh, cavity);
+    const double after = energy(mesh, added);
+    EXPECT_EQ(verify(mesh), "");
+    EXPECT_TRUE(same_shape(properties(mesh), shape));
+    EXPECT_LE(after, 0.95 * before);
+    EXPECT_LE(worst_aspect_ratio(mesh, added), limit * (1 + 1e-12));
+    EXPECT_NEAR(cavity.worst_before, before, 1e-9 * before);
+    EXPECT_NEAR(cavity.worst_after, after, 1e-9 * after);
+}
+
+TEST(EdgeRemovalByEnergy, FindsTheBestTriangulationOfTheRing) {
+    Random random{2};
+    int done = 0, refused = 0, worst_rose = 0;
+    for (int round = 0; round < 600; ++round) {
+        SCOPED_TRACE("seed 2, round " + std::to_string(round));
+        const bool closed = round % 3 != 0;
+        const int n = 3 + static_cast<int>(random.below(4));  // ring vertices, 3 ... 6
+        Mesh mesh = random_shell(closed ? shell_of_edge(n) : open_shell_of_edge(n - 1), closed, random);
+        const SwapGoal goal{true, random.uniform(5, 40)};
+        const auto around = *shell(mesh, axis);
+        const double before = energy(mesh, around.tets);
+        const double worst_before = worst_aspect_ratio(mesh, around.tets);
+        const double best = best_by_trying_all(mesh, around.ring, 0, around.ring.size() - 1, goal);
+        const auto cavity = edge_removal(mesh, around, axis, goal);
+        if (!cavity) {
+            EXPECT_GE(best, 0.95 * before * (1 - 1e-12));
+            ++refused;
+            continue;
+        }
+        EXPECT_NEAR(cavity->worst_after, best, 1e-12 * best);
+        expect_good_energy_swap(mesh, *cavity, goal.limit);
+        worst_rose += worst_of(mesh) > worst_before;
+        ++done;
+    }
+    EXPECT_GE(done, 100);
+    EXPECT_GE(refused, 100);
+    EXPECT_GE(worst_rose, 1);  // it is another goal than the worst
+}
+
+TEST(FaceRemovalByEnergy, LowersTheEnergyWithinTheLimit) {
+    for (double height : {0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5}) {
+        SCOPED_TRACE("height " + std::to_string(height));
+        Mesh mesh = two_tets_of_height(height), swapped = mesh;
+        replace_cells(swapped, {{Tet(0), Tet(1)}, {{{Vertex(4), Vertex(0), Vertex(1), Vertex(3)}, surroundings},
+                                                   {{Vertex(4), Vertex(1), Vertex(2), Vertex(3)}, surroundings},
+                                                   {{Vertex(4), Vertex(2), Vertex(0), Vertex(3)}, surroundings}}, {}});
+        ASSERT_EQ(verify(swapped), "");
+        const double worst = worst_of(swapped);
+        const bool pays = energy(swapped, all_tets(swapped)) < 0.95 * energy(mesh, all_tets(mesh));
+        EXPECT_FALSE(face_removal(mesh, {Tet(0), 3}, {true, 0.999 * worst})) << "a cell would be above the limit";
+        const auto cavity = face_removal(mesh, {Tet(0), 3}, {true, 1.001 * worst});
+        ASSERT_EQ(cavity.has_value(), pays);
+        EXPECT_EQ(pays, height < 0.6);
+        if (cavity) expect_good_energy_swap(mesh, *cavity, 1.001 * worst);
+    }
 }
 
 }  // namespace

@@ -167,5 +167,40 @@ TEST(Mesh, IsAValue) {
     EXPECT_NE(copy, mesh);
 }
 
+TEST(CopyChanged, CopiesWhatIsNamedAndNothingElse) {
+    const Mesh from = [] {
+        Mesh mesh = cube_of_tets(2);
+        mesh.position[Vertex(13)] = {0.51, 0.5, 0.5};
+        mesh.position[Vertex(4)] = {0.52, 0.5, 0};
+        return mesh;
+    }();
+    Mesh to = cube_of_tets(2);
+    copy_changed(to, from, {}, std::array{Vertex(13)});
+    EXPECT_EQ(to.position[Vertex(13)], from.position[Vertex(13)]);
+    EXPECT_EQ(to.position[Vertex(4)], (Vec3{0.5, 0.5, 0}));
+    copy_changed(to, from, {}, std::array{Vertex(4)});
+    EXPECT_EQ(to, from);
+}
+
+TEST(CopyChanged, MakesTheMeshSmallerAgain) {
+    const Mesh before = cube_of_tets(1);
+    Mesh mesh = before;
+    const Tet t(0);
+    Cavity cavity{{t}, {}, {centroid(mesh, t)}};
+    for (std::size_t i = 0; i < 4; ++i) {
+        NewTet added{mesh.tets[t], mesh.region[t]};
+        added.vertices[i] = next_vertex(mesh);
+        cavity.added.push_back(added);
+    }
+    auto tets = replace_cells(mesh, cavity);
+    tets.push_back(t);
+    ASSERT_GT(mesh.tets.size(), before.tets.size());
+    Mesh follower = before;
+    copy_changed(follower, mesh, tets, {});
+    EXPECT_EQ(follower, mesh);
+    copy_changed(follower, before, tets, {});
+    EXPECT_EQ(follower, before);
+}
+
 }  // namespace
 }  // namespace kropla

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 
 namespace kropla {
@@ -68,22 +69,33 @@ struct Kind {
     int done = 0;
 };
 
+std::vector<Kind> all_kinds() {
+    return {{"insertion", try_insertion, true},   {"facet removal", try_facet_removal},
+            {"edge removal", try_edge_removal},   {"wall swap", try_wall_swap},
+            {"edge split", try_edge_split, true}, {"edge collapse", try_edge_collapse}};
+}
+
+/// Tries a random kind of operation at a random tet; a mesh that stays small is soon verified.
+std::optional<Cavity> try_somewhere(const Mesh& mesh, Kind& kind, Random& random) {
+    const Tet t(std::size_t(random.below(mesh.tets.size())));
+    const bool may_grow = count_tets(mesh) < 250;
+    if (!alive(mesh, t) || (kind.adds_a_vertex && !may_grow)) return std::nullopt;
+    auto cavity = kind.propose(mesh, t, random);
+    if (!cavity || !all_positive(mesh, *cavity)) return std::nullopt;
+    return cavity;
+}
+
 TEST(RandomOperations, KeepTheMeshAMesh) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Mesh mesh = cube_in_cube(3);
         const Properties before = properties(mesh);
         Random random{seed};
-        Kind kinds[] = {{"insertion", try_insertion, true},   {"facet removal", try_facet_removal},
-                        {"edge removal", try_edge_removal},   {"wall swap", try_wall_swap},
-                        {"edge split", try_edge_split, true}, {"edge collapse", try_edge_collapse}};
+        auto kinds = all_kinds();
         for (int done = 0; done < 1500;) {
-            const Tet t(std::size_t(random.below(mesh.tets.size())));
-            const bool may_grow = count_tets(mesh) < 250;  // a mesh that stays small is soon verified
             Kind& kind = kinds[random.below(6)];
-            if (!alive(mesh, t) || (kind.adds_a_vertex && !may_grow)) continue;
-            const auto cavity = kind.propose(mesh, t, random);
-            if (!cavity || !all_positive(mesh, *cavity)) continue;
+            const auto cavity = try_somewhere(mesh, kind, random);
+            if (!cavity) continue;
             replace_cells(mesh, *cavity);
             ++kind.done;
             ++done;
@@ -91,6 +103,51 @@ TEST(RandomOperations, KeepTheMeshAMesh) {
         }
         EXPECT_TRUE(same_shape(properties(mesh), before));
         for (const Kind& kind : kinds) EXPECT_GE(kind.done, 20) << kind.name;
+    }
+}
+
+/// What a follower of the mesh is to be told.
+struct Changed {
+    std::vector<Tet> tets;
+    std::vector<Vertex> vertices;
+};
+
+/// Carries out up to `count` random operations, each followed by a small move of a vertex of the new tets.
+Changed change_at_random(Mesh& mesh, int count, Random& random) {
+    Changed changed;
+    auto kinds = all_kinds();
+    for (int done = 0; done < count;) {
+        const auto cavity = try_somewhere(mesh, kinds[random.below(6)], random);
+        if (!cavity) continue;
+        for (std::size_t k = 0; k < cavity->inserted.size(); ++k)
+            changed.vertices.push_back(next_vertex(mesh, k));
+        const auto added = replace_cells(mesh, *cavity);
+        changed.tets.insert(changed.tets.end(), added.begin(), added.end());
+        changed.tets.insert(changed.tets.end(), cavity->removed.begin(), cavity->removed.end());
+        const Vertex v = mesh.tets[added.front()][random.below(4)];
+        const Vec3 here = mesh.position[v];
+        if (constraint(mesh, v, ball(mesh, v)).free()) mesh.position[v] += Vec3{random.uniform(-0.01, 0.01), 0, 0};
+        if (std::isfinite(worst_aspect_ratio(mesh, ball(mesh, v)))) changed.vertices.push_back(v);
+        else mesh.position[v] = here;
+        ++done;
+    }
+    return changed;
+}
+
+TEST(RandomOperations, AreFollowedByCopyChanged) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random{seed};
+        Mesh reference = cube_in_cube(3), current = reference;
+        for (int round = 0; round < 40; ++round) {
+            const Changed changed = change_at_random(current, 1 + static_cast<int>(random.below(20)), random);
+            ASSERT_EQ(verify(current), "");
+            ASSERT_NE(current, reference);
+            const bool refused = random.below(2) == 0;
+            if (refused) copy_changed(current, reference, changed.tets, changed.vertices);
+            else copy_changed(reference, current, changed.tets, changed.vertices);
+            ASSERT_EQ(current, reference) << "round " << round << (refused ? ", taken back" : ", taken over");
+        }
     }
 }
 

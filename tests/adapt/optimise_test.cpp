@@ -1,0 +1,155 @@
+#include "adapt/cases.h"
+#include "adapt/threads.h"
+#include "adapt/zone.h"
+#include "base/random.h"
+#include "mesh/quality.h"
+#include "mesh/verify.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace kropla {
+namespace {
+
+/// The sphere's mesh with its inner vertices moved at random where no cell becomes worse than `worst`.
+Mesh shaken_mesh(std::uint64_t seed, double worst) {
+    Mesh mesh = improved_mesh(sphere_in_box(), seed);
+    Random random{seed};
+    for (Vertex v : all_vertices(mesh)) {
+        const auto around = ball(mesh, v);
+        if (!constraint(mesh, v, around).free()) continue;
+        const Vec3 here = mesh.position[v];
+        mesh.position[v] += 0.08 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        if (worst_aspect_ratio(mesh, around) > worst) mesh.position[v] = here;
+    }
+    return mesh;
+}
+
+/// The same with some cells spoilt.
+Mesh spoilt_mesh(std::uint64_t seed) {
+    Mesh mesh = shaken_mesh(seed, 40);
+    spoil(mesh, surroundings, 10, seed);
+    return mesh;
+}
+
+Zone zone_of(const Mesh& mesh) {
+    Zone zone;
+    gather(zone, mesh, all_tets(mesh, surroundings));
+    find_sizes(zone, snapshot(sphere_in_box(), 0));
+    return zone;
+}
+
+TEST(OptimisePlacesOfAZone, HeldVerticesStayAndOthersSlide) {
+    const Mesh mesh = spoilt_mesh(1);
+    Zone zone = zone_of(mesh);
+    EXPECT_GT(optimise_places(zone, AdaptOptions{}), 0);
+    int moved = 0, on_walls = 0;
+    for (std::size_t v = 0; v < zone.vertices.size(); ++v) {
+        const Freedom free = freedom(zone, static_cast<int>(v));
+        for (int axis = 0; axis < 3; ++axis)
+            if (!free.along[static_cast<std::size_t>(axis)]) {
+                EXPECT_EQ(zone.place[v][axis], zone.start[v][axis]) << "vertex " << zone.vertices[v].value;
+            }
+        if (zone.place[v] == zone.start[v]) continue;
+        ++moved;
+        on_walls += std::ranges::count(free.along, true) < 3;
+    }
+    EXPECT_GE(moved, 50);
+    EXPECT_GE(on_walls, 10);
+}
+
+TEST(OptimisePlacesOfAZone, MakesNoCellBadIfNoneIs) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Mesh mesh = shaken_mesh(seed, 5);
+        Zone zone = zone_of(mesh);
+        const double worst = worst_aspect_ratio(mesh, zone.cells);
+        optimise_places(zone, AdaptOptions{.good_enough = worst});
+        EXPECT_NE(zone.place, zone.start);
+        for (std::size_t c = 0; c < zone.cells.size(); ++c) EXPECT_LE(zone.ratio[c], worst);
+    }
+}
+
+TEST(OptimisePlacesOfAZone, LeavesFewBadCellsAndKnowsTheirRatios) {
+    const AdaptOptions options;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Mesh mesh = spoilt_mesh(seed);
+        Zone zone = zone_of(mesh);
+        measure(zone);
+        const auto is_bad = [&](double ratio) { return ratio > options.good_enough; };
+        const auto bad_before = std::ranges::count_if(zone.ratio, is_bad);
+        const double worst_before = std::ranges::max(zone.ratio);
+        optimise_places(zone, options);
+        EXPECT_LT(4 * std::ranges::count_if(zone.ratio, is_bad), 3 * bad_before);
+        EXPECT_LT(std::ranges::max(zone.ratio), worst_before);
+        write_places(zone, mesh);
+        EXPECT_EQ(verify(mesh), "");
+        for (std::size_t c = 0; c < zone.cells.size(); ++c)
+            EXPECT_EQ(zone.ratio[c], aspect_ratio(mesh, zone.cells[c]));
+    }
+}
+
+TEST(OptimisePlacesOfAZone, EqualisesVolumes) {
+    Zone zone = zone_of(spoilt_mesh(2));
+    const auto mean_ratio = [&] {
+        double sum = 0;
+        for (std::size_t c = 0; c < zone.cells.size(); ++c) sum += aspect_ratio(zone, static_cast<int>(c));
+        return sum / static_cast<double>(zone.cells.size());
+    };
+    const double before = mean_ratio();
+    optimise_places(zone, AdaptOptions{});
+    EXPECT_LT(mean_ratio(), 0.97 * before);
+}
+
+TEST(OptimisePlacesOfAZone, SameBitsForAnyNumberOfThreads) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Mesh mesh = spoilt_mesh(seed);
+        const auto optimised = [&] {
+            Zone zone = zone_of(mesh);
+            optimise_places(zone, AdaptOptions{});
+            return zone;
+        };
+        const Zone by_one = with_threads(1, optimised), by_two = with_threads(2, optimised);
+        EXPECT_NE(by_one.place, by_one.start);
+        EXPECT_EQ(by_one.place, by_two.place);
+        EXPECT_EQ(by_one.ratio, by_two.ratio);
+    }
+}
+
+TEST(AdaptToSize, SameBitsForAnyNumberOfThreads) {
+    const Mesh mesh = spoilt_mesh(1);
+    Domain uniform = sphere_in_box();  // crowded at the sphere, sparse far from it
+    uniform.size = {0.6, 0, 0.6};
+    const auto adapted = [&] {
+        Mesh result = mesh;
+        const Changes changes = adapt_to_size(result, all_tets(mesh, surroundings), snapshot(uniform, 0));
+        EXPECT_GT(changes.splits, 0);
+        EXPECT_GT(changes.collapses, 0);
+        return result;
+    };
+    const Mesh by_one = with_threads(1, adapted);
+    EXPECT_EQ(verify(by_one), "");
+    EXPECT_EQ(by_one, with_threads(2, adapted));
+}
+
+TEST(Improve, SameBitsForAnyNumberOfThreads) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Mesh mesh = spoilt_mesh(seed);
+        const auto improved = [&] {
+            Mesh result = mesh;
+            const Changes changes = improve(result, all_tets(mesh), snapshot(sphere_in_box(), 0));
+            EXPECT_GT(changes.swaps, 10);
+            return result;
+        };
+        const Mesh by_one = with_threads(1, improved);
+        EXPECT_NE(by_one, mesh);
+        EXPECT_EQ(by_one, with_threads(2, improved));
+    }
+}
+
+}  // namespace
+}  // namespace kropla
