@@ -240,7 +240,7 @@ TEST(MovingMesh, AfterRefusalsTooAStepBeginsWithThreeEqualMeshes) {
     int refined = 0;
     for (int i = 0; i < 3; ++i) {
         const Mesh reference = moving.reference();
-        for (int refusals = 0; refusals < 3; ++refusals) {  // the later ones after refine() changed connectivity
+        for (int refusals = 0; refusals < 3; ++refusals) {  // before the later ones, refine() has work to do
             moving.begin_step();
             ASSERT_TRUE(attempt(moving, moving.time() + 0.95));
             refined += moving.statistics().refined.cells_replaced;
@@ -282,7 +282,7 @@ TEST(MovingMesh, LargeStepsAreNotRefused) {
     for (const SizeField& size : {SizeField{0.35, 0.4, 0.8}, SizeField{0.17, 0.3, 0.8}})
         for (std::uint64_t seed = 1; seed <= 3; ++seed)
             for (double way : {2 * size.surface, radius}) {
-                SCOPED_TRACE("surface size " + std::to_string(size.surface) + ", seed " + std::to_string(seed));
+                SCOPED_TRACE("size " + std::to_string(size.surface) + ", seed " + std::to_string(seed));
                 EXPECT_EQ(refusals_of_a_step(seed, way, size), 0) << "way " << way;
             }
     EXPECT_EQ(refusals_of_a_step(1, 3 * 0.17, {0.17, 0.3, 0.8}), 0) << "three surface sizes";

@@ -62,7 +62,8 @@ TEST(Replaced, WhatIsNotOutdatedIsAsGoodAsItWas) {
     Mesh mesh = improved_mesh(sphere_in_box(), 1);
     spoil(mesh, surroundings, 40, 1);
     const auto tets = all_tets(mesh);
-    const auto proposals = propose_all(tets.size(), [&](std::size_t i) { return best_removal(mesh, tets[i]); });
+    const auto propose = [&](std::size_t i) { return best_removal(mesh, tets[i]); };
+    const auto proposals = propose_all(tets.size(), propose);
     Replaced replaced;
     int done = 0, outdated = 0;
     for (std::size_t i = 0; i < tets.size(); ++i) {

@@ -17,7 +17,8 @@ Mesh sphere_mesh() { return improved_mesh(sphere_in_box(), 1); }
 
 std::vector<Tet> ball_in(const Zone& zone, std::size_t v) {
     std::vector<Tet> tets;
-    for (int i = zone.ball_begin[v]; i < zone.ball_begin[v + 1]; ++i) tets.push_back(zone.cells[at(zone.ball[at(i)])]);
+    for (int i = zone.ball_begin[v]; i < zone.ball_begin[v + 1]; ++i)
+        tets.push_back(zone.cells[at(zone.ball[at(i)])]);
     std::ranges::sort(tets);
     return tets;
 }

@@ -126,7 +126,7 @@ Changed change_at_random(Mesh& mesh, int count, Random& random) {
         changed.tets.insert(changed.tets.end(), cavity->removed.begin(), cavity->removed.end());
         const Vertex v = mesh.tets[added.front()][random.below(4)];
         const Vec3 here = mesh.position[v];
-        if (constraint(mesh, v, ball(mesh, v)).free()) mesh.position[v] += Vec3{random.uniform(-0.01, 0.01), 0, 0};
+        if (constraint(mesh, v, ball(mesh, v)).free()) mesh.position[v].x += random.uniform(-0.01, 0.01);
         if (std::isfinite(worst_aspect_ratio(mesh, ball(mesh, v)))) changed.vertices.push_back(v);
         else mesh.position[v] = here;
         ++done;
