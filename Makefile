@@ -6,11 +6,13 @@
 #                 table; STEPS=10: fewer meshes of the others
 # make bench-engine  work in proportion to change, and what a second thread saves
 # make bench-strategies  the same motion by ours and by three plainer ways, one table
+# make bench-spread  ways to spread a body's displacement into its surroundings
 # make bench-transfer  1000 transfers to and fro, by interpolation and by projection: docs/transfer.md
 # make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer
 # Each installs the Debian packages that are missing.
 
-.PHONY: all demo test bench bench-peers bench-engine bench-strategies bench-transfer endurance packages configure clean
+.PHONY: all demo test bench bench-peers bench-engine bench-strategies bench-spread bench-transfer endurance packages \
+        configure clean
 
 all: configure
 	cmake --build --preset release
@@ -49,6 +51,11 @@ bench-strategies: packages
 	cmake --preset bench
 	cmake --build --preset bench --target kropla_strategies
 	build/bench/bin/kropla_strategies $(STEPS)
+
+bench-spread: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla_spread
+	build/bench/bin/kropla_spread $(STEPS)
 
 bench-transfer: packages
 	cmake --preset bench

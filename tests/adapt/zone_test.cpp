@@ -79,7 +79,7 @@ TEST(Zone, VerticesOnTheBoxSlideOnItAndThoseOfInterfacesAreHeld) {
             const bool on_wall = (held.patches >> (2 * axis) & 3) != 0;
             EXPECT_EQ(free.along[axis], !on_wall && !held.on_interface) << "vertex " << vertex.value;
         }
-        ++count[at(std::ranges::count(free.along, true))];
+        ++count[static_cast<std::size_t>(std::ranges::count(free.along, true))];
     }
     EXPECT_GE(count[0], 8 + 20) << "corners of the box, the sphere";
     for (std::size_t axes = 1; axes < 4; ++axes) EXPECT_GE(count[axes], 10) << axes << " axes";
