@@ -90,12 +90,12 @@ inline constexpr int longest_ring = 9;
 
 struct AdaptOptions {
     int relaxations = 2;              // sweeps that equalise volumes as the mesh moves
-    double swap_above = 3.7;          // [-] R/r: worse cells are swapped away where that lowers the energy
+    double swap_above = 3.4;          // [-] R/r: worse cells are swapped away where that lowers the energy
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
-    double passing = 9.0;             // [-] R/r: cells of the wrong size may become as bad, to be improved at once
+    double passing = 50.0;            // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
     double split_above = 1.6;         // [target sizes] longer edges are split
-    double collapse_below = 0.75;     // [target sizes] shorter edges are collapsed
+    double collapse_below = 0.7;     // [target sizes] shorter edges are collapsed
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung
     std::uint64_t seed = 1;           // of the new points of a cluster

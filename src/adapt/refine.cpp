@@ -17,6 +17,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// How long, in terms of split_above, an edge may be that a collapse makes. Slightly above 1, so that crowded vertices can
+// go although others are too few: what is squeezed along one axis is torn along another.
+constexpr double longest_after_collapse = 1.04;
+
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The vertices of `t` with `to` in the place of `from`.
@@ -177,7 +181,7 @@ std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, const EdgeMe
     std::vector<Tet> around;
     for (const auto& [from, to] : {std::pair(e.a, e.b), std::pair(e.b, e.a)}) {
         ball_of(from, around);
-        if (makes_long_edge(mesh, around, from, to, measure, 0.95 * o.split_above)) continue;
+        if (makes_long_edge(mesh, around, from, to, measure, longest_after_collapse * o.split_above)) continue;
         auto cavity = edge_collapse(mesh, from, to, around, best ? best->worst_after : infinity);
         if (!cavity || cavity->worst_after > std::max(o.passing, cavity->worst_before)) continue;
         best = std::move(cavity);
