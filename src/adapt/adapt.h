@@ -94,8 +94,8 @@ struct AdaptOptions {
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
     double passing = 50.0;            // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
-    double split_above = 1.6;         // [target sizes] longer edges are split
-    double collapse_below = 0.7;     // [target sizes] shorter edges are collapsed
+    double split_above = 1.52;        // [target sizes] longer edges are split
+    double collapse_below = 0.65;     // [target sizes] shorter edges are collapsed
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung
     std::uint64_t seed = 1;           // of the new points of a cluster

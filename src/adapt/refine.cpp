@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // How long, in terms of split_above, an edge may be that a collapse makes. Slightly above 1, so that crowded vertices can
 // go although others are too few: what is squeezed along one axis is torn along another.
-constexpr double longest_after_collapse = 1.04;
+constexpr double longest_after_collapse = 1.05;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
