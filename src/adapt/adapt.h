@@ -16,8 +16,9 @@ namespace kropla {
 
 // --- What adaptation did ---------------------------------------------------------------------------------------
 
-/// What was changed and how often each operator was used. `vertices` are new or were moved at a fixed time, so that
-/// the solution is to be carried there; `cells` are new. Each may stand more than once, some may be gone again.
+/// What was changed and how often each operator was used. `vertices` are new or were moved at a fixed time,
+/// so that the solution is to be carried there; `cells` are new. Each may stand more than once, some may be
+/// gone again.
 struct Changes {
     std::vector<Vertex> vertices;
     std::vector<Tet> cells;
@@ -34,8 +35,8 @@ void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes);
 
 // --- Smoothing (paper 1.1) ---------------------------------------------------------------------------------------
 
-/// The paper's weights (Fig. 4): for the neighbours Pi of a vertex, w_i = sum of the distances from Pi to the other
-/// neighbours, divided by the mean of those sums; new place = sum (x1 + x2 w_i) Pi / sum (x1 + x2 w_i).
+/// The paper's weights (Fig. 4): for the neighbours Pi of a vertex, w_i = sum of the distances from Pi to the
+/// other neighbours, divided by the mean of those sums; new place = sum (x1 + x2 w_i) Pi / sum (x1 + x2 w_i).
 /// x2 = 0 is the standard Laplacian; x1 = 0, x2 = 1 equalises volumes.
 struct LaplaceWeights {
     double x1 = 1, x2 = 0;
@@ -44,46 +45,47 @@ struct LaplaceWeights {
 /// Where the weighted Laplacian puts `v`, kept on the faces of the box it lies on; on an interface it stays.
 [[nodiscard]] Vec3 laplacian_place(const Mesh& mesh, Vertex v, const LaplaceWeights& weights);
 
-/// One sweep over `vertices`, in order, each seeing the new places of those before it. Unguarded: cells may turn over.
+/// One sweep over `vertices`, in order, each seeing the new places of those before it. Unguarded: cells may
+/// turn over.
 void smooth_laplacian(Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights);
 
-/// One sweep that takes a move only if the worst aspect ratio of the vertex's ball does not get worse. Returns the
-/// vertices that moved.
+/// One sweep that takes a move only if the worst aspect ratio of the vertex's ball does not get worse.
+/// Returns the vertices that moved.
 std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights);
 
-/// Moves `v` to where the worst aspect ratio of its ball is least, or as low as `good_enough`; slides on the faces of
-/// the box; stays on interfaces. Returns whether it moved: only if the worst ratio fell.
+/// Moves `v` to where the worst aspect ratio of its ball is least, or as low as `good_enough`; slides on the
+/// faces of the box; stays on interfaces. Returns whether it moved: only if the worst ratio fell.
 bool optimise_vertex(Mesh& mesh, Vertex v, double good_enough);
 
 // --- Proposals: swapping, splitting, collapsing, inserting ------------------------------------------------------
 
-/// What a swap is to lower: the worst aspect ratio of the cells it replaces; or their energy, the sum of volume times
-/// (R/r)^4 [m^3], which does not depend on the number of cells and is ruled by the bad ones, with no cell worse than
-/// `limit` after. `worst_before` and `worst_after` of the proposal are then energies.
+/// What a swap is to lower: the worst aspect ratio of the cells it replaces; or their energy, the sum of
+/// volume times (R/r)^4 [m^3], which does not depend on the number of cells and is ruled by the bad ones,
+/// with no cell worse than `limit` after. `worst_before` and `worst_after` of the proposal are then energies.
 struct SwapGoal {
     bool by_energy = false;
     double limit = std::numeric_limits<double>::infinity();  // [-] R/r
 };
 
-/// Face removal: the two tets at a facet become three around a new edge. Nothing on the boundary or an interface, or
-/// if the goal is not served.
+/// Face removal: the two tets at a facet become three around a new edge. Nothing on the boundary or an
+/// interface, or if the goal is not served.
 [[nodiscard]] std::optional<Cavity> face_removal(const Mesh& mesh, Facet facet, SwapGoal goal = {});
 
-/// Edge removal: the shell of the edge is replaced by the best triangulation of its ring, joined to both ends; on a
-/// face of the box too, within the face. Nothing for an edge of an interface or of two patches, for a ring of more
-/// than `longest_ring` vertices, or if the goal is not served.
+/// Edge removal: the shell of the edge is replaced by the best triangulation of its ring, joined to both
+/// ends; on a face of the box too, within the face. Nothing for an edge of an interface or of two patches,
+/// for a ring of more than `longest_ring` vertices, or if the goal is not served.
 inline constexpr int longest_ring = 9;
 [[nodiscard]] std::optional<Cavity> edge_removal(const Mesh& mesh, const Shell& shell, Edge edge, SwapGoal goal = {});
 
-/// Pulls `from` onto `to`. Nothing if `from` is held by something that the edge does not lie on, or if the worst
-/// aspect ratio after would exceed `worst_allowed`.
+/// Pulls `from` onto `to`. Nothing if `from` is held by something that the edge does not lie on, or if the
+/// worst aspect ratio after would exceed `worst_allowed`.
 [[nodiscard]] std::optional<Cavity> edge_collapse(const Mesh& mesh, Vertex from, Vertex to, double worst_allowed);
 /// As above, with the ball of `from`: for loops that ask often.
 [[nodiscard]] std::optional<Cavity> edge_collapse(const Mesh& mesh, Vertex from, Vertex to, std::span<const Tet> around,
                                                   double worst_allowed);
 
-/// A new vertex on the edge, at the best place inside its shell (on a face of the box: within the face). Nothing for
-/// an edge of an interface, or if the worst aspect ratio after would exceed `worst_allowed`.
+/// A new vertex on the edge, at the best place inside its shell (on a face of the box: within the face).
+/// Nothing for an edge of an interface, or if the worst aspect ratio after would exceed `worst_allowed`.
 [[nodiscard]] std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge, double worst_allowed);
 
 // --- Improvement: operators chosen worst-first -------------------------------------------------------------------
@@ -101,32 +103,34 @@ struct AdaptOptions {
     std::uint64_t seed = 1;           // of the new points of a cluster
 };
 
-/// Works on the cells of `cells` (and those that replace them) with an aspect ratio above `good_enough`, worst first:
-/// swap, else move a vertex, else collapse, else insert. Never makes the worst cell of a cavity worse.
+/// Works on the cells of `cells` (and those that replace them): above `good_enough` worst first, swap, else
+/// move a vertex, else collapse, else insert, never making the worst cell of a cavity worse; between
+/// `swap_above` and that by swaps for the energy.
 Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
-/// Splits and collapses edges of `cells` towards the target size; a cell is made worse than `passing` only if one of
-/// those it replaces was. To be followed by `improve`.
+/// Splits and collapses edges of `cells` towards the target size; a cell is made worse than `passing` only if
+/// one of those it replaces was. To be followed by `improve`.
 Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
-/// Moves vertices only (connectivity is unchanged): the paper's smoothing in both modes, guarded, then optimisation
-/// of what is left above `good_enough`.
+/// Moves vertices only (connectivity is unchanged): equalises volumes, takes vertices back that spoil cells,
+/// then optimises what is left above `good_enough`.
 Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options = {});
 
-/// Cuts a cluster of tets of one region out, keeps its boundary facets, drops its free vertices, fills it with new
-/// points of the target size, re-triangulates and unites; where a boundary facet is not recovered, the cell across
-/// it joins the cluster. Nothing if that does not end, or the worst aspect ratio would not fall.
+/// Cuts a cluster of tets of one region out, keeps its boundary facets, drops its free vertices, fills it
+/// with new points of the target size, re-triangulates and unites; where a boundary facet is not recovered,
+/// the cell across it joins the cluster. Nothing if that does not end, or the worst aspect ratio would not
+/// fall.
 [[nodiscard]] std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> cluster, const Snapshot& at,
                                                    const AdaptOptions& options = {});
 
-/// The repair ladder (paper 1.2-1.3): what `improve` leaves above the floor is cut out and re-triangulated, with one
-/// more ring of cells each time, at last with the whole region.
+/// The repair ladder (paper 1.2-1.3): what `improve` leaves above the floor is cut out and re-triangulated,
+/// with one more ring of cells each time, at last with the whole region.
 Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
 // --- Motion ------------------------------------------------------------------------------------------------------
 
-/// The largest fraction in [0, 1] of the displacements up to which all of `cells` keep a volume of at least `least`
-/// of what they have; from the cubic of each cell's volume along its path.
+/// The largest fraction in [0, 1] of the displacements up to which all of `cells` keep a volume of at least
+/// `least` of what they have; from the cubic of each cell's volume along its path.
 [[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells,
                                    const Array<Vertex, Vec3>& displacement, double least = 0.05);
 
@@ -139,8 +143,9 @@ struct MoveReport {
 };
 
 /// Moves bodies rigidly from their places at `t0` to those at `t1` [s] and spreads the displacement into the
-/// surroundings, if every cell stays valid on the way; else tells how far it could go. Connectivity is unchanged.
-/// `bodies` are, per body, the vertices of its cells. `zone` becomes the surroundings that the displacement reaches.
+/// surroundings, if every cell stays valid on the way; else tells how far it could go. Connectivity is
+/// unchanged. `bodies` are, per body, the vertices of its cells. `zone` becomes the surroundings that the
+/// displacement reaches.
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                          double t1, Zone& zone);
 

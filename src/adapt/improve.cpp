@@ -1,7 +1,8 @@
-// Improvement of the worst cells first: for each, the operators in the order of what they cost the solution (a swap
-// keeps all vertices, smoothing moves one, a collapse loses one, a split adds one), after the schedule of [Klingner,
-// Shewchuk 2007], "Aggressive tetrahedral mesh improvement", here cell by cell from a queue, so that work is
-// proportional to the bad cells. It ends, as each step lowers the worst aspect ratio of what it replaces.
+// Improvement of the worst cells first: for each, the operators in the order of what they cost the solution
+// (a swap keeps all vertices, smoothing moves one, a collapse loses one, a split adds one), after the
+// schedule of [Klingner, Shewchuk 2007], "Aggressive tetrahedral mesh improvement", here cell by cell from a
+// queue, so that work is proportional to the bad cells. It ends, as each step lowers the worst aspect ratio
+// of what it replaces.
 
 #include "adapt/propose.h"
 #include "mesh/quality.h"
@@ -69,8 +70,9 @@ void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
     if (!best || gain(*other) > gain(*best)) best = std::move(other);
 }
 
-/// Which swaps can make a cell flatter than it should be better: an edge at which it is obtuse (a sliver, a wedge), and a
-/// facet under all of whose edges it is not (a cap: the opposite corner stands above the facet).
+/// Which swaps can make a cell flatter than it should be better: an edge at which it is obtuse (a sliver, a
+/// wedge), and a facet under all of whose edges it is not (a cap: the opposite corner stands above the
+/// facet).
 struct Promising {
     std::array<bool, 6> edge{};   // as tet_edges
     std::array<bool, 4> facet{};
@@ -109,7 +111,8 @@ std::optional<Cavity> best_for_energy(const Mesh& mesh, Tet t, double limit) {
     return best;
 }
 
-/// Swaps at passable cells, in the order given; where a swap has been overtaken by another, and at new cells, again.
+/// Swaps at passable cells, in the order given; where a swap has been overtaken by another, and at new cells,
+/// again.
 void swap_for_energy(Improvement& work, std::span<const Tet> cells) {
     const Mesh& mesh = work.mesh;
     const double limit = passable_after_swap * work.options.good_enough;

@@ -1,8 +1,9 @@
-// Motion of bodies through the mesh. Bodies move rigidly; their displacement is spread into the surroundings by weights
-// that fall with the distance, as in [Luke, Collins, Blades 2012], "A fast mesh deformation method using explicit
-// interpolation". Here a body's displacement is that of its rigid motion at the vertex, and how much of it is felt
-// follows the cells' size, so that cells stream past the body instead of being squeezed and torn; vertices on the
-// faces of the box slide along; and a body reaches no farther than a few of its own sizes.
+// Motion of bodies through the mesh. Bodies move rigidly; their displacement is spread into the surroundings
+// by weights that fall with the distance, as in [Luke, Collins, Blades 2012], "A fast mesh deformation method
+// using explicit interpolation". Here a body's displacement is that of its rigid motion at the vertex, and
+// how much of it is felt follows the cells' size, so that cells stream past the body instead of being
+// squeezed and torn; vertices on the faces of the box slide along; and a body reaches no farther than a few
+// of its own sizes.
 
 #include "adapt/for_all.h"
 #include "adapt/zone.h"
@@ -46,8 +47,9 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
     return result;
 }
 
-/// The share of a body's motion that the mesh takes part in at a distance from it. Seen from the body, cells stream
-/// past; with their size h rising outwards, as many vertices enter any part as leave it if the stream is as h^3.
+/// The share of a body's motion that the mesh takes part in at a distance from it. Seen from the body, cells
+/// stream past; with their size h rising outwards, as many vertices enter any part as leave it if the stream
+/// is as h^3.
 double felt(const SizeField& size, double distance, double reach) {
     if (distance >= reach) return 0;
     const auto volume_at = [&](double d) { return std::pow(size.surface + size.growth * d, 3); };
@@ -85,8 +87,8 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
     return u;
 }
 
-/// Six times the volume of a tet as its corners go along straight lines, as a cubic in the fraction s of the way:
-/// its four Bernstein coefficients on [0, 1].
+/// Six times the volume of a tet as its corners go along straight lines, as a cubic in the fraction s of the
+/// way: its four Bernstein coefficients on [0, 1].
 std::array<double, 4> volume_along(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de) {
     const double c0 = determinant(e[0], e[1], e[2]);
     const double c1 = determinant(de[0], e[1], e[2]) + determinant(e[0], de[1], e[2]) + determinant(e[0], e[1], de[2]);
@@ -96,8 +98,8 @@ std::array<double, 4> volume_along(const std::array<Vec3, 3>& e, const std::arra
     return {c0, c0 + c1 / 3, c0 + (2 * c1 + c2) / 3, c0 + c1 + c2 + c3};
 }
 
-/// The largest s up to which the cubic with these Bernstein coefficients stays positive; it is positive at 0. A cubic
-/// is positive where its coefficients are; else the interval is halved [de Casteljau].
+/// The largest s up to which the cubic with these Bernstein coefficients stays positive; it is positive at 0.
+/// A cubic is positive where its coefficients are; else the interval is halved [de Casteljau].
 double positive_until(const std::array<double, 4>& b, int depth = 0) {
     if (std::ranges::all_of(b, [](double x) { return x > 0; })) return 1;
     if (depth == 16 || b[0] <= 0) return 0;
@@ -127,8 +129,8 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displac
     return positive_share(e, de, least);
 }
 
-/// Adds the bodies' vertices and returns where they go: rigidly with the body, but for the columns of layers, which stand on
-/// their wall at the end as high as the gaps there let them.
+/// Adds the bodies' vertices and returns where they go: rigidly with the body, but for the columns of layers,
+/// which stand on their wall at the end as high as the gaps there let them.
 std::vector<Vec3> add_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
                  std::span<const std::vector<Vertex>> bodies, Zone& zone) {
     std::vector<Vec3> goals;
@@ -167,8 +169,8 @@ bool out_of_reach(std::span<const Travel> travels, const Vec3& x) {
     });
 }
 
-/// Gathers the bodies' vertices, the surroundings' tets with a vertex in reach of a body, found outwards from the
-/// bodies, and where the vertices are to go.
+/// Gathers the bodies' vertices, the surroundings' tets with a vertex in reach of a body, found outwards from
+/// the bodies, and where the vertices are to go.
 void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
                     std::span<const std::vector<Vertex>> bodies, Zone& zone) {
     clear(zone);

@@ -221,8 +221,8 @@ const Changes& MovingMesh::accept() {
     return changes;
 }
 
-/// The cells that are to be improved if they can: all bad ones; of those that are passable, the ones that have become
-/// worse in this step or have their turn.
+/// The cells that are to be improved if they can: all bad ones; of those that are passable, the ones that
+/// have become worse in this step or have their turn.
 std::vector<Tet> MovingMesh::poor_cells() const {
     std::vector<Tet> poor;
     for (std::size_t c = 0; c < zone_.cells.size(); ++c) {

@@ -20,8 +20,8 @@ struct StepStatistics {
     int cells_touched = 0;
 };
 
-/// A mesh that follows its bodies, by the paper's step (1, 2.1-2.6): a reference mesh that is not touched before a
-/// step has been accepted, and a current mesh on which the step is prepared.
+/// A mesh that follows its bodies, by the paper's step (1, 2.1-2.6): a reference mesh that is not touched
+/// before a step has been accepted, and a current mesh on which the step is prepared.
 ///
 ///     moving.begin_step();                    // 2.1
 ///     moving.refine();                        // 2.2
@@ -40,23 +40,23 @@ public:
 
     /// The current mesh becomes a copy of the reference.
     void begin_step();
-    /// After a refusal, remeshes where the motion got stuck; else does nothing. The solution is to be carried from
-    /// reference() to before() at the vertices that are returned.
+    /// After a refusal, remeshes where the motion got stuck; else does nothing. The solution is to be carried
+    /// from reference() to before() at the vertices that are returned.
     const Changes& refine();
     /// Moves bodies to where they are at `t` [s], in as many legs as it takes for all cells to stay valid.
     void move_boundary(double t);
     void optimise();
 
-    /// The mesh of the step at its beginning and at its end: one connectivity, two sets of places. After accept(),
-    /// before() is the mesh at the end of the step, not yet remeshed.
+    /// The mesh of the step at its beginning and at its end: one connectivity, two sets of places. After
+    /// accept(), before() is the mesh at the end of the step, not yet remeshed.
     [[nodiscard]] const Mesh& before() const { return before_; }
     [[nodiscard]] const Mesh& current() const { return current_; }
 
     /// Empty if the motion arrived and every cell meets the floors, all along its way.
     [[nodiscard]] std::optional<Refusal> refusal() const;
     void refuse();
-    /// The current mesh becomes the reference and is remeshed where needed. The solution is to be carried from
-    /// before() to reference() at the vertices that are returned.
+    /// The current mesh becomes the reference and is remeshed where needed. The solution is to be carried
+    /// from before() to reference() at the vertices that are returned.
     const Changes& accept();
 
 private:

@@ -1,8 +1,9 @@
-// Optimisation of the places of the vertices of a zone (the paper's modification steps, Fig. 5: equalise volumes, then
-// smooth for quality), for little: all vertices go at once to the barycentres of their balls, weighted by volume in
-// target volumes; then the cells are measured, each once; where one has become bad, its vertices go back; and what
-// is bad still is optimised vertex by vertex. Weighting as in the centroidal patch tessellation of [Chen, Holst 2011],
-// "Efficient mesh optimization schemes based on Optimal Delaunay Triangulations".
+// Optimisation of the places of the vertices of a zone (the paper's modification steps, Fig. 5: equalise
+// volumes, then smooth for quality), for little: all vertices go at once to the barycentres of their balls,
+// weighted by volume in target volumes; then the cells are measured, each once; where one has become bad, its
+// vertices go back; and what is bad still is optimised vertex by vertex. Weighting as in the centroidal patch
+// tessellation of [Chen, Holst 2011], "Efficient mesh optimization schemes based on Optimal Delaunay
+// Triangulations".
 
 #include "adapt/for_all.h"
 #include "adapt/zone.h"

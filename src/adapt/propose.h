@@ -8,13 +8,13 @@
 
 namespace kropla {
 
-/// What `propose` says for 0 ... count - 1, asked by several threads at once on a mesh that nothing changes meanwhile: the
-/// same for any number of threads.
+/// What `propose` says for 0 ... count - 1, asked by several threads at once on a mesh that nothing changes
+/// meanwhile: the same for any number of threads.
 [[nodiscard]] std::vector<std::optional<Cavity>> propose_all(
     std::size_t count, const std::function<std::optional<Cavity>(std::size_t)>& propose);
 
-/// Cells that have been replaced since proposals were made: a proposal that would replace one of them is out of date, all
-/// others are as good as they were.
+/// Cells that have been replaced since proposals were made: a proposal that would replace one of them is out
+/// of date, all others are as good as they were.
 class Replaced {
 public:
     void add(const Cavity& cavity) {

@@ -1,5 +1,5 @@
-// Splitting and collapsing edges towards the target size. The new vertex of a split goes to the best place inside
-// the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
+// Splitting and collapsing edges towards the target size. The new vertex of a split goes to the best place
+// inside the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
 
 #include "adapt/adapt.h"
 #include "adapt/propose.h"
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// How long, in terms of split_above, an edge may be that a collapse makes. Slightly above 1, so that crowded vertices can
-// go although others are too few: what is squeezed along one axis is torn along another.
+// How long, in terms of split_above, an edge may be that a collapse makes. Slightly above 1, so that crowded
+// vertices can go although others are too few: what is squeezed along one axis is torn along another.
 constexpr double longest_after_collapse = 1.05;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -102,7 +102,8 @@ struct WrongEdge {
     double ratio;  // of its length to the target size
 };
 
-/// Lengths in target sizes. The zone knows the sizes at its vertices, which cost a search for the nearest body.
+/// Lengths in target sizes. The zone knows the sizes at its vertices, which cost a search for the nearest
+/// body.
 class EdgeMeasure {
 public:
     EdgeMeasure(const Mesh& mesh, const Zone& zone, const Snapshot& at_time)
@@ -123,8 +124,8 @@ private:
     const Snapshot& at_time_;
 };
 
-/// The edges of the zone's cells that are too long or too short. Crowds are thinned before gaps are filled; the
-/// shortest and the longest edges come first.
+/// The edges of the zone's cells that are too long or too short. Crowds are thinned before gaps are filled;
+/// the shortest and the longest edges come first.
 std::vector<WrongEdge> wrong_edges(const Zone& zone, const AdaptOptions& o) {
     std::vector<WrongEdge> wrong;
     for (std::size_t cell = 0; cell < zone.cells.size(); ++cell)

@@ -1,7 +1,7 @@
-// Local remeshing (paper 1.3): cut a cluster out, keep its boundary, fill it with new points, triangulate, unite. The
-// paper keeps the vertices next to the cluster; here its boundary facets are kept, so that uniting is exact, and where
-// the Delaunay triangulation of the cluster's points lacks one of them, the cluster grows across it: remeshing spreads
-// only where it must. The repair ladder climbs from there ring by ring.
+// Local remeshing (paper 1.3): cut a cluster out, keep its boundary, fill it with new points, triangulate,
+// unite. The paper keeps the vertices next to the cluster; here its boundary facets are kept, so that uniting
+// is exact, and where the Delaunay triangulation of the cluster's points lacks one of them, the cluster grows
+// across it: remeshing spreads only where it must. The repair ladder climbs from there ring by ring.
 
 #include "adapt/adapt.h"
 #include "base/random.h"
@@ -133,7 +133,8 @@ std::array<int, 3> rotated_to_least(std::array<int, 3> f) {
     return f;
 }
 
-/// The Delaunay tets inside the hole; `missing` are the facets that should stay but are none of the triangulation.
+/// The Delaunay tets inside the hole; `missing` are the facets that should stay but are none of the
+/// triangulation.
 struct Filling {
     std::vector<std::array<Vertex, 4>> tets;
     std::vector<BoundaryFacet> on_box;  // the facets inside which the hole is bounded by the box
@@ -203,8 +204,8 @@ Filling fill_hole(const Hole& hole, const Box& box) {
     return filling;
 }
 
-/// Takes in the cells across the facets that were not recovered. Nothing can be taken in across the boundary or an
-/// interface: then false.
+/// Takes in the cells across the facets that were not recovered. Nothing can be taken in across the boundary
+/// or an interface: then false.
 bool grow_across(const Mesh& mesh, const Hole& hole, std::span<const std::size_t> missing, Cluster& cluster) {
     bool grown = false;
     for (std::size_t f : missing) {
@@ -243,7 +244,8 @@ Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, con
     Array<Vertex, Vertex> name(filled.position.size());
     for (Vertex v : filled.position.indices()) {
         if (!alive(filled, v)) continue;
-        // A vertex of a face of the box that has slid on it comes as a new one: no cell outside had the old one.
+        // A vertex of a face of the box that has slid on it comes as a new one: no cell outside had the old
+        // one.
         const bool known = at(v.value) < hole.vertices.size();
         if (known && filled.position[v] == hole.points[at(v.value)]) {
             name[v] = hole.vertices[at(v.value)];

@@ -1,8 +1,8 @@
-// The place of a vertex at which the worst of its tets is best: minimisation of the maximum of the aspect ratios, by
-// steepest descent of that maximum. The descent direction is the shortest vector of the convex hull of the gradients
-// of the worst tets, after [Freitag, Ollivier-Gooch 1997], "Tetrahedral mesh improvement using swapping and
-// smoothing"; found here by the iteration of [Frank, Wolfe 1956] instead of their active-set search, as three figures
-// are enough for a direction.
+// The place of a vertex at which the worst of its tets is best: minimisation of the maximum of the aspect
+// ratios, by steepest descent of that maximum. The descent direction is the shortest vector of the convex
+// hull of the gradients of the worst tets, after [Freitag, Ollivier-Gooch 1997], "Tetrahedral mesh
+// improvement using swapping and smoothing"; found here by the iteration of [Frank, Wolfe 1956] instead of
+// their active-set search, as three figures are enough for a direction.
 
 #include "adapt/star.h"
 

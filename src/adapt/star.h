@@ -9,8 +9,8 @@
 
 namespace kropla {
 
-/// A facet of a star-shaped polyhedron, by its corners, seen counter-clockwise from outside: with a point x inside it
-/// makes the tet (x, a, b, c).
+/// A facet of a star-shaped polyhedron, by its corners, seen counter-clockwise from outside: with a point x
+/// inside it makes the tet (x, a, b, c).
 struct StarFacet {
     Vec3 a, b, c;
 };
@@ -26,15 +26,16 @@ struct Freedom {
 [[nodiscard]] Freedom freedom(const Constraint& c);
 [[nodiscard]] Vec3 restricted(const Vec3& a, const Freedom& f);
 
-/// The worst aspect ratio of the tets between `x` and the facets; evaluation ends as soon as it exceeds `bound`.
+/// The worst aspect ratio of the tets between `x` and the facets; evaluation ends as soon as it exceeds
+/// `bound`.
 [[nodiscard]] double worst_in_star(std::span<const StarFacet> star, const Vec3& x, double bound);
 
 struct Place {
     Vec3 x;
     double worst;  // aspect ratio there
 };
-/// The place in the star, from `start` on, where the worst aspect ratio is least, or at most `good_enough`. `start`
-/// is inside (all tets positive).
+/// The place in the star, from `start` on, where the worst aspect ratio is least, or at most `good_enough`.
+/// `start` is inside (all tets positive).
 [[nodiscard]] Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freedom& f,
                                double good_enough);
 

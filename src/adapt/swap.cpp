@@ -1,7 +1,8 @@
-// Swapping: face removal (2-3) and edge removal (3-2, 4-4 and longer rings) with the best triangulation of the ring by
-// dynamic programming, after [Shewchuk 2002], "Two discrete optimization algorithms for the topological improvement of
-// tetrahedral meshes", who credits [Klincsek 1980]. Here the objective is the largest aspect ratio R/r, or a sum over
-// the volume, for which the same recursion holds; and the ring may be open: an edge on a face of the box, whose two ends of the ring then close it within the face.
+// Swapping: face removal (2-3) and edge removal (3-2, 4-4 and longer rings) with the best triangulation of
+// the ring by dynamic programming, after [Shewchuk 2002], "Two discrete optimization algorithms for the
+// topological improvement of tetrahedral meshes", who credits [Klincsek 1980]. Here the objective is the
+// largest aspect ratio R/r, or a sum over the volume, for which the same recursion holds; and the ring may be
+// open: an edge on a face of the box, whose two ends of the ring then close it within the face.
 
 #include "adapt/adapt.h"
 #include "base/tetrahedron.h"
@@ -44,8 +45,8 @@ double of_tets(const Mesh& mesh, std::span<const Tet> tets, SwapGoal goal) {
     return all;
 }
 
-/// The best triangulation of the ring's polygon i ... j, for all i < j: what it is worth, and the third corner of the
-/// triangle on the side i-j.
+/// The best triangulation of the ring's polygon i ... j, for all i < j: what it is worth, and the third
+/// corner of the triangle on the side i-j.
 struct RingTable {
     double value[most][most];
     std::size_t apex[most][most];

@@ -6,9 +6,9 @@
 
 namespace kropla {
 
-/// A part of the mesh that is moved as a whole: its cells and their vertices by numbers of its own, close together in
-/// memory, with copies of their places. Nothing in the mesh changes before `write_places`. To be kept from step to
-/// step: what it holds is used again.
+/// A part of the mesh that is moved as a whole: its cells and their vertices by numbers of its own, close
+/// together in memory, with copies of their places. Nothing in the mesh changes before `write_places`. To be
+/// kept from step to step: what it holds is used again.
 struct Zone {
     std::vector<Tet> cells;
     std::vector<std::array<int, 4>> corners;  // per cell: numbers of its vertices
@@ -24,19 +24,19 @@ struct Zone {
     Numbering<Tet> cell_number;
 };
 
-/// Most cells and edges that could be better have been tried in vain before: those that have not become worse are tried
-/// again by turns only, by their `name`; always if the zone has no `turn`.
+/// Most cells and edges that could be better have been tried in vain before: those that have not become worse
+/// are tried again by turns only, by their `name`; always if the zone has no `turn`.
 [[nodiscard]] bool has_turn(const Zone& zone, int name);
 
 /// Empties the zone.
 void clear(Zone& zone);
 /// Adds a vertex, which does not slide, if it is not in the zone; returns its number.
 int add_held(Zone& zone, const Mesh& mesh, Vertex v);
-/// Adds a cell and its vertices, if it is not in the zone. Vertices are held by the boundary that the zone's cells
-/// have there.
+/// Adds a cell and its vertices, if it is not in the zone. Vertices are held by the boundary that the zone's
+/// cells have there.
 void add_cell(Zone& zone, const Mesh& mesh, Tet t);
-/// Once all cells are there: finds the balls. Vertices that have cells out of the zone, or lie on an interface, are
-/// held.
+/// Once all cells are there: finds the balls. Vertices that have cells out of the zone, or lie on an
+/// interface, are held.
 void close(Zone& zone, const Mesh& mesh);
 
 /// A zone of these cells (those that are alive).
@@ -49,7 +49,8 @@ void find_sizes(Zone& zone, const Snapshot& at_time);
 void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star);
 [[nodiscard]] Freedom freedom(const Zone& zone, int vertex);
 
-/// Moves vertices: `place` and `ratio` change. `size` is set. Returns how many were moved for the worst cells.
+/// Moves vertices: `place` and `ratio` change. `size` is set. Returns how many were moved for the worst
+/// cells.
 int optimise_places(Zone& zone, const AdaptOptions& options);
 /// Asks for the aspect ratios of all cells.
 void measure(Zone& zone);

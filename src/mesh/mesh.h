@@ -88,8 +88,8 @@ struct Compacted {
 };
 [[nodiscard]] Compacted compact(const Mesh& mesh);
 
-/// Makes `to` equal to `from` where they may differ: in the slots of `tets` and in the places of `vertices`. Work is
-/// proportional to those, and to the free slots.
+/// Makes `to` equal to `from` where they may differ: in the slots of `tets` and in the places of `vertices`.
+/// Work is proportional to those, and to the free slots.
 void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::span<const Vertex> vertices);
 
 }  // namespace kropla

@@ -6,8 +6,8 @@
 
 namespace kropla {
 
-/// Consecutive numbers for some of the indices of a kind. Emptying it costs nothing, so that one that is kept serves
-/// for small parts of a large mesh again and again.
+/// Consecutive numbers for some of the indices of a kind. Emptying it costs nothing, so that one that is kept
+/// serves for small parts of a large mesh again and again.
 template <class I>
 class Numbering {
 public:
