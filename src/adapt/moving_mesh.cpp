@@ -35,6 +35,14 @@ std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
     return vertices;
 }
 
+/// Of those of the cells that are alive.
+double worst_aspect_ratio_of(const Mesh& mesh, std::span<const Tet> cells) {
+    double worst = 0;
+    for (Tet t : cells)
+        if (alive(mesh, t)) worst = std::max(worst, aspect_ratio(mesh, t));
+    return worst;
+}
+
 std::string describe(const Mesh& mesh, Tet t, const char* what) {
     const Vec3 x = centroid(mesh, t);
     char text[200];
@@ -201,21 +209,34 @@ void MovingMesh::refuse() {
         trouble_.push_back(centroid(before_, reason->limiting));
 }
 
+Changes MovingMesh::remesh(const AdaptOptions& options) {
+    const Snapshot at_time = snapshot(domain_, time_);
+    Changes changes = adapt_to_size(reference_, zone_, at_time, options);
+    std::vector<Tet> poor = poor_cells();
+    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
+    changes += improve(reference_, poor, at_time, options);
+    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
+    changes += repair(reference_, poor, at_time, options);
+    return changes;
+}
+
 const Changes& MovingMesh::accept() {
     time_ = target_time_;
     std::swap(before_, current_);
     copy_changed(reference_, before_, replaced_, moved_);
     trouble_.clear();
 
-    const Snapshot at_time = snapshot(domain_, time_);
-    Changes& changes = statistics_.remeshed;
     zone_.turn = std::hash<double>{}(time_);  // from the time, so that a run that is resumed goes the same way
-    changes = adapt_to_size(reference_, zone_, at_time, options_);
-    std::vector<Tet> poor = poor_cells();
-    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
-    changes += improve(reference_, poor, at_time, options_);
-    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
-    changes += repair(reference_, poor, at_time, options_);
+    Changes& changes = statistics_.remeshed;
+    changes = remesh(options_);
+    if (worst_aspect_ratio_of(reference_, changes.cells) > options_.floor) {
+        // What passed the floor on its way stayed there: taken back, and done again without passing it.
+        note_replaced(changes);
+        copy_changed(reference_, before_, replaced_, moved_);
+        AdaptOptions options = options_;
+        options.passing = std::min(options.passing, options.floor);
+        changes = remesh(options);
+    }
     note_replaced(changes);
     statistics_.cells_touched = static_cast<int>(zone_.cells.size());
     return changes;

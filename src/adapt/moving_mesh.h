@@ -63,6 +63,7 @@ private:
     [[nodiscard]] std::optional<Refusal> narrow_gap() const;
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
+    Changes remesh(const AdaptOptions& options);  // the reference
     void optimise_at(double t);
     [[nodiscard]] std::vector<Tet> poor_cells() const;
     void note_moved();
