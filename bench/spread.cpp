@@ -172,12 +172,6 @@ struct Outcome {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-bool is_safe(const Zone& zone) {
-    for (std::size_t c = 0; c < zone.cells.size(); ++c)
-        if (safe_fraction(zone, static_cast<int>(c), least_volume_kept) < 1) return false;
-    return true;
-}
-
 /// One step by the way; the mesh is moved if no cell turns over.
 bool step(Way way, Mesh& mesh, const Domain& domain, double t0, double t1, Zone& zone, Outcome& outcome) {
     const std::vector<std::vector<Vertex>> bodies = {body_vertices(mesh)};
@@ -187,7 +181,7 @@ bool step(Way way, Mesh& mesh, const Domain& domain, double t0, double t1, Zone&
     if (way != Way::ours)
         outcome.iterations += spread_harmonically(zone, bodies.front().size(), way == Way::stiffened);
     const double spread = cpu_seconds();
-    if (way == Way::ours ? !arrived : !is_safe(zone)) return false;
+    if (way == Way::ours ? !arrived : !check_way(zone, least_volume_kept).arrived) return false;
     const double checked = cpu_seconds();
     find_sizes(zone, snapshot(domain, t1));
     optimise_places(zone, AdaptOptions{});

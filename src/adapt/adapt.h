@@ -91,7 +91,7 @@ inline constexpr int longest_ring = 9;
 // --- Improvement: operators chosen worst-first -------------------------------------------------------------------
 
 struct AdaptOptions {
-    int relaxations = 2;              // sweeps that equalise volumes as the mesh moves
+    int relaxations = 1;              // sweeps that equalise volumes as the mesh moves
     double swap_above = 3.4;          // [-] R/r: worse cells are swapped away where that lowers the energy
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
     double passing = 50.0;            // [-] R/r: cells of the wrong size may become as bad, to be improved at once
@@ -103,10 +103,16 @@ struct AdaptOptions {
     std::uint64_t seed = 1;           // of the new points of a cluster
 };
 
+/// Swaps away the longest edges of `cells` (and of those that replace them) where that lowers the energy; where
+/// a swap has been overtaken by another, again.
+Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options = {});
+
 /// Works on the cells of `cells` (and those that replace them): above `good_enough` worst first, swap, else
-/// move a vertex, else collapse, else insert, never making the worst cell of a cavity worse; between
-/// `swap_above` and that by swaps for the energy.
-Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
+/// move a vertex, else collapse, else insert, never making the worst cell of a cavity worse; before and after
+/// that by swaps for the energy. Of several vertices the one is moved that has most of its
+/// cells among those that are new, or in `changed`: the solution is to be carried there anyway.
+Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {},
+                std::span<const Tet> changed = {});
 
 /// Splits and collapses edges of `cells` towards the target size; a cell is made worse than `passing` only if
 /// one of those it replaces was. To be followed by `improve`.

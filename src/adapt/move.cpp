@@ -129,6 +129,16 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displac
     return positive_share(e, de, least);
 }
 
+double safe_fraction(const Zone& zone, std::size_t cell, double least) {
+    const auto& v = zone.corners[cell];
+    std::array<Vec3, 3> e, de;
+    for (int i = 0; i < 3; ++i) {
+        e[at(i)] = zone.start[at(v[at(i + 1)])] - zone.start[at(v[0])];
+        de[at(i)] = zone.place[at(v[at(i + 1)])] - zone.place[at(v[0])] - e[at(i)];
+    }
+    return positive_share(e, de, least);
+}
+
 /// Adds the bodies' vertices and returns where they go: rigidly with the body, but for the columns of layers,
 /// which stand on their wall at the end as high as the gaps there let them.
 std::vector<Vec3> add_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
@@ -169,28 +179,55 @@ bool out_of_reach(std::span<const Travel> travels, const Vec3& x) {
     });
 }
 
-/// Gathers the bodies' vertices, the surroundings' tets with a vertex in reach of a body, found outwards from
-/// the bodies, and where the vertices are to go.
+/// Finds the tets of the surroundings with a vertex in reach of a body, and those beside them, outwards from
+/// the bodies.
+void find_reached(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
+                  IndexSet<Tet>& found) {
+    std::vector<Tet> front;
+    const auto add = [&](Tet t) {
+        if (!found.contains(t) && mesh.region[t] == surroundings) {
+            found.insert(t);
+            front.push_back(t);
+        }
+    };
+    for (const auto& body : bodies)
+        if (const auto t = tet_beside(mesh, body)) add(*t);
+    const auto is_out = [&](Vertex v) { return out_of_reach(travels, mesh.position[v]); };
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        if (std::ranges::all_of(mesh.tets[front[i]], is_out)) continue;
+        for (Tet n : mesh.neighbour[front[i]])
+            if (n.exists()) add(n);
+    }
+}
+
+/// Gathers the bodies' vertices, what is in reach of them, and where the vertices are to go.
 void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
                     std::span<const std::vector<Vertex>> bodies, Zone& zone) {
     clear(zone);
     const auto goals = add_bodies(mesh, at_end, travels, bodies, zone);
-    for (const auto& body : bodies)
-        if (const auto t = tet_beside(mesh, body)) add_cell(zone, mesh, *t);
-    std::vector<char> held(goals.size(), false);
-    for (std::size_t i = 0; i < zone.cells.size(); ++i) {
-        for (std::size_t v = held.size(); v < zone.vertices.size(); ++v)
-            held.push_back(out_of_reach(travels, zone.start[v]));
-        if (std::ranges::all_of(zone.corners[i], [&](int v) { return held[at(v)] != 0; })) continue;
-        for (Tet n : mesh.neighbour[zone.cells[i]])
-            if (n.exists() && mesh.region[n] == surroundings) add_cell(zone, mesh, n);
-    }
+    find_reached(mesh, travels, bodies, zone.holds);
     close(zone, mesh);
     std::ranges::copy(goals, zone.place.begin());
     for_all(zone.vertices.size() - goals.size(), [&](std::size_t i) {
         const std::size_t v = goals.size() + i;
-        if (held[v] == 0) zone.place[v] += spread(travels, at_start, zone.start[v]);
+        if (!out_of_reach(travels, zone.start[v])) zone.place[v] += spread(travels, at_start, zone.start[v]);
     });
+}
+
+/// Which of four cells keep `least` of their volume on the way without doubt, told by their sizes: a determinant
+/// of rows that are no longer than L and change by no more than D changes by at most (L + D)^3 - L^3 [by
+/// Hadamard's inequality for each of its terms].
+KROPLA_FOR_EACH_PROCESSOR
+void tell_safe(const FourTets& start, const FourTets& end, double least, std::array<bool, 4>& safe) {
+    const std::array<FourVec3, 3> e = {start.b - start.a, start.c - start.a, start.d - start.a};
+    const FourVec3 da = end.a - start.a;
+    const std::array<FourVec3, 3> de = {end.b - start.b - da, end.c - start.c - da, end.d - start.d - da};
+    const auto longest = [](const std::array<FourVec3, 3>& rows) {
+        return square_root(greater(greater(squared_norm(rows[0]), squared_norm(rows[1])), squared_norm(rows[2])));
+    };
+    const Four l = longest(e), d = longest(de);
+    const Four surplus = (1 - least) * determinant(e[0], e[1], e[2]) - d * (3 * l * (l + d) + d * d);
+    for (std::size_t i = 0; i < 4; ++i) safe[i] = surplus[i] > 0;
 }
 
 }  // namespace
@@ -202,30 +239,26 @@ double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<V
     return fraction;
 }
 
-double safe_fraction(const Zone& zone, int cell, double least) {
-    const auto& v = zone.corners[at(cell)];
-    std::array<Vec3, 3> e, de;
-    for (int i = 0; i < 3; ++i) {
-        e[at(i)] = zone.start[at(v[at(i + 1)])] - zone.start[at(v[0])];
-        de[at(i)] = zone.place[at(v[at(i + 1)])] - zone.place[at(v[0])] - e[at(i)];
-    }
-    return positive_share(e, de, least);
+MoveReport check_way(const Zone& zone, double least) {
+    std::vector<double> safe(zone.cells.size(), 1);
+    for_all((safe.size() + 3) / 4, [&](std::size_t four) {
+        const std::size_t first = 4 * four;
+        std::array<bool, 4> is_safe;
+        tell_safe(four_cells(zone, first, zone.start), four_cells(zone, first, zone.place), least, is_safe);
+        for (std::size_t i = 0; i < 4 && first + i < safe.size(); ++i)
+            if (!is_safe[i]) safe[first + i] = safe_fraction(zone, first + i, least);
+    });
+    MoveReport report{true, 1, {}};
+    for (std::size_t c = 0; c < safe.size(); ++c)
+        if (safe[c] < report.fraction) report = {false, safe[c], zone.cells[c]};
+    return report;
 }
 
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                          double t1, Zone& zone) {
     constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
     gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
-    std::vector<double> safe(zone.cells.size());
-    for_all(safe.size(), [&](std::size_t c) { safe[c] = safe_fraction(zone, static_cast<int>(c), least_volume_kept); });
-    MoveReport report;
-    report.fraction = 1;
-    for (std::size_t c = 0; c < safe.size(); ++c)
-        if (safe[c] < report.fraction) {
-            report.fraction = safe[c];
-            report.limiting = zone.cells[c];
-        }
-    report.arrived = report.fraction == 1;
+    const MoveReport report = check_way(zone, least_volume_kept);
     if (report.arrived) write_places(zone, mesh);
     return report;
 }

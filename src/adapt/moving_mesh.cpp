@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 
 namespace kropla {
 namespace {
@@ -14,7 +13,6 @@ namespace {
 constexpr int most_legs = 8;             // into which the motion of a step is cut
 constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
-constexpr double worse_in_step = 1.05;   // a cell that gets worse by this has a chance of being improved
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
 constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
@@ -153,13 +151,10 @@ std::optional<Refusal> MovingMesh::refusal() const {
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;
-    std::vector<double> safe(zone_.cells.size());
-    for_all(safe.size(), [&](std::size_t c) { safe[c] = safe_fraction(zone_, static_cast<int>(c), least_volume_kept); });
-    for (std::size_t c = 0; c < safe.size(); ++c)
-        if (safe[c] < 1)
-            return Refusal{describe(before_, zone_.cells[c], "would be turned inside out on its way"), zone_.cells[c],
-                           safe[c] * (target_time_ - time_)};
-    return std::nullopt;
+    const MoveReport way = check_way(zone_, least_volume_kept);
+    if (way.arrived) return std::nullopt;
+    return Refusal{describe(before_, way.limiting, "would be turned inside out on its way"), way.limiting,
+                   way.fraction * (target_time_ - time_)};
 }
 
 std::optional<Refusal> MovingMesh::narrow_gap() const {
@@ -212,11 +207,11 @@ void MovingMesh::refuse() {
 Changes MovingMesh::remesh(const AdaptOptions& options) {
     const Snapshot at_time = snapshot(domain_, time_);
     Changes changes = adapt_to_size(reference_, zone_, at_time, options);
-    std::vector<Tet> poor = poor_cells();
+    changes += swap_for_energy(reference_, cells_above(options.swap_above), options);
+    std::vector<Tet> poor = cells_above(options.good_enough);
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
-    changes += improve(reference_, poor, at_time, options);
-    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
-    changes += repair(reference_, poor, at_time, options);
+    changes += improve(reference_, poor, at_time, options, changes.cells);
+    changes += repair(reference_, changes.cells, at_time, options);
     return changes;
 }
 
@@ -226,7 +221,6 @@ const Changes& MovingMesh::accept() {
     copy_changed(reference_, before_, replaced_, moved_);
     trouble_.clear();
 
-    zone_.turn = std::hash<double>{}(time_);  // from the time, so that a run that is resumed goes the same way
     Changes& changes = statistics_.remeshed;
     changes = remesh(options_);
     if (worst_aspect_ratio_of(reference_, changes.cells) > options_.floor) {
@@ -242,18 +236,12 @@ const Changes& MovingMesh::accept() {
     return changes;
 }
 
-/// The cells that are to be improved if they can: all bad ones; of those that are passable, the ones that
-/// have become worse in this step or have their turn.
-std::vector<Tet> MovingMesh::poor_cells() const {
-    std::vector<Tet> poor;
-    for (std::size_t c = 0; c < zone_.cells.size(); ++c) {
-        const double ratio = zone_.ratio[c];
-        if (ratio <= options_.swap_above) continue;
-        const Tet t = zone_.cells[c];
-        if (ratio > options_.good_enough || has_turn(zone_, t.value) || ratio > worse_in_step * start_ratio(zone_, static_cast<int>(c)))
-            poor.push_back(t);
-    }
-    return poor;
+/// The cells that the step has made worse than `ratio`, or has left so.
+std::vector<Tet> MovingMesh::cells_above(double ratio) const {
+    std::vector<Tet> cells;
+    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
+        if (zone_.ratio[c] > ratio) cells.push_back(zone_.cells[c]);
+    return cells;
 }
 
 void MovingMesh::note_moved() { moved_.insert(moved_.end(), zone_.vertices.begin(), zone_.vertices.end()); }

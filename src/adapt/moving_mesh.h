@@ -65,7 +65,7 @@ private:
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
     Changes remesh(const AdaptOptions& options);  // the reference
     void optimise_at(double t);
-    [[nodiscard]] std::vector<Tet> poor_cells() const;
+    [[nodiscard]] std::vector<Tet> cells_above(double ratio) const;
     void note_moved();
     void note_replaced(const Changes& changes);
 

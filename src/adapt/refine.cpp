@@ -127,14 +127,15 @@ private:
 /// The edges of the zone's cells that are too long or too short. Crowds are thinned before gaps are filled;
 /// the shortest and the longest edges come first.
 std::vector<WrongEdge> wrong_edges(const Zone& zone, const AdaptOptions& o) {
+    const double longest = o.split_above * o.split_above, shortest = o.collapse_below * o.collapse_below;
     std::vector<WrongEdge> wrong;
     for (std::size_t cell = 0; cell < zone.cells.size(); ++cell)
         for (const auto& [i, j] : tet_edges) {
             const std::size_t a = at(zone.corners[cell][at(i)]), b = at(zone.corners[cell][at(j)]);
-            const double size = (zone.size[a] + zone.size[b]) / 2, length = distance(zone.place[a], zone.place[b]);
-            if (length <= o.split_above * size && length >= o.collapse_below * size) continue;
+            const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
+            if (square <= longest * (size * size) && square >= shortest * (size * size)) continue;
             const auto [first, second] = std::minmax(zone.vertices[a], zone.vertices[b]);
-            wrong.push_back({{first, second}, zone.cells[cell], length / size});
+            wrong.push_back({{first, second}, zone.cells[cell], std::sqrt(square) / size});
         }
     std::ranges::sort(wrong, {}, [](const WrongEdge& w) {
         return std::tuple(w.ratio > 1, w.ratio > 1 ? -w.ratio : w.ratio, w.edge.a, w.edge.b, w.cell);
@@ -208,11 +209,10 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
     };
     const auto in_zone = [&](Vertex v, std::vector<Tet>& tets) { ball_at_start(mesh, zone, v, tets); };
     const auto in_mesh = [&](Vertex v, std::vector<Tet>& tets) { ball(mesh, v, tets); };
-    auto proposals = propose_all(shorts, [&](std::size_t i) { return collapse(i, in_zone); });
     Replaced replaced;
-    for (std::size_t i = 0; i < shorts; ++i) {
-        auto& cavity = proposals[i];
-        if (cavity && replaced.outdates(*cavity)) cavity = cell_at(mesh, wrong[i]) ? collapse(i, in_mesh) : std::nullopt;
+    for (auto& [i, proposed] : propose_all(shorts, [&](std::size_t i) { return collapse(i, in_zone); })) {
+        std::optional<Cavity> cavity = std::move(proposed);
+        if (replaced.outdates(*cavity)) cavity = cell_at(mesh, wrong[i]) ? collapse(i, in_mesh) : std::nullopt;
         if (!cavity) continue;
         replaced.add(*cavity);
         carry_out(mesh, *cavity, changes);

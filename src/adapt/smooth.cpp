@@ -63,13 +63,7 @@ std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices,
 }
 
 bool optimise_vertex(Mesh& mesh, Vertex v, double good_enough) {
-    std::vector<Tet> around;
-    ball(mesh, v, around);
-    const Freedom f = freedom(constraint(mesh, v, around));
-    if (f.none()) return false;
-    std::vector<StarFacet> star;
-    star_of_ball(mesh, v, around, star);
-    const Place best = best_place(star, mesh.position[v], f, good_enough);
+    const Place best = better_place(mesh, v, ball(mesh, v), good_enough);
     if (best.x == mesh.position[v]) return false;
     mesh.position[v] = best.x;
     return true;

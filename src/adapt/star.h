@@ -38,5 +38,7 @@ struct Place {
 /// `start` is inside (all tets positive).
 [[nodiscard]] Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freedom& f,
                                double good_enough);
+/// The same for a vertex and its ball; where it is, if it is held or there is no better place.
+[[nodiscard]] Place better_place(const Mesh& mesh, Vertex v, std::span<const Tet> ball, double good_enough);
 
 }  // namespace kropla

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr unsigned char all_axes = 7;
 
-int add_vertex(Zone& zone, const Mesh& mesh, Vertex v, unsigned char axes) {
+int number_vertex(Zone& zone, const Mesh& mesh, Vertex v, unsigned char axes) {
     if (const int known = zone.number(v); known >= 0) return known;
     zone.vertices.push_back(v);
     zone.start.push_back(mesh.position[v]);
@@ -21,60 +21,27 @@ int add_vertex(Zone& zone, const Mesh& mesh, Vertex v, unsigned char axes) {
     return zone.number.add(v);
 }
 
-/// The vertices of the facets of the cell on the boundary stay on it; those of an interface stay.
-void hold_to_boundary(Zone& zone, const Mesh& mesh, Tet t, const std::array<int, 4>& corners) {
+/// The axes along which the vertices of a facet of the zone may slide.
+unsigned char axes_of(const Zone& zone, const Mesh& mesh, Facet facet) {
+    const Tet n = mesh.neighbour[facet.tet][at(facet.corner)];
+    if (n.exists()) return zone.holds.contains(n) && mesh.region[n] == mesh.region[facet.tet] ? all_axes : 0;
+    const Patch patch = mesh.patch[facet.tet][at(facet.corner)];
+    return patch.value < box_faces ? static_cast<unsigned char>(all_axes & ~(1 << patch.value / 2)) : 0;
+}
+
+void add_cell(Zone& zone, const Mesh& mesh, Tet t) {
+    std::array<int, 4> corners{};
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = number_vertex(zone, mesh, mesh.tets[t][i], all_axes);
+    zone.cells.push_back(t);
+    zone.corners.push_back(corners);
     for (int i = 0; i < 4; ++i) {
-        const Patch patch = mesh.patch[t][at(i)];
-        const Tet n = mesh.neighbour[t][at(i)];
-        unsigned char kept = all_axes;
-        if (n.exists()) kept = mesh.region[n] == mesh.region[t] ? all_axes : 0;
-        else kept = patch.value < box_faces ? static_cast<unsigned char>(all_axes & ~(1 << patch.value / 2)) : 0;
-        if (kept == all_axes) continue;
-        for (int corner : tet_facets[at(i)]) zone.axes[at(corners[at(corner)])] &= kept;
+        const unsigned char axes = axes_of(zone, mesh, {t, i});
+        if (axes == all_axes) continue;
+        for (int corner : tet_facets[at(i)]) zone.axes[at(corners[at(corner)])] &= axes;
     }
 }
 
-double ratio_at(const std::vector<Vec3>& places, const std::array<int, 4>& v) {
-    return tet_aspect_ratio(places[at(v[0])], places[at(v[1])], places[at(v[2])], places[at(v[3])]);
-}
-
-}  // namespace
-
-bool has_turn(const Zone& zone, int name) {
-    constexpr std::size_t turns = 8;
-    return !zone.turn || (at(name) + *zone.turn) % turns == 0;
-}
-
-void clear(Zone& zone) {
-    zone.cells.clear();
-    zone.corners.clear();
-    zone.vertices.clear();
-    zone.start.clear();
-    zone.axes.clear();
-    zone.number.clear();
-    zone.cell_number.clear();
-}
-
-int add_held(Zone& zone, const Mesh& mesh, Vertex v) { return add_vertex(zone, mesh, v, 0); }
-
-void add_cell(Zone& zone, const Mesh& mesh, Tet t) {
-    if (zone.cell_number(t) >= 0) return;
-    zone.cell_number.add(t);
-    zone.cells.push_back(t);
-    std::array<int, 4> corners{};
-    for (std::size_t i = 0; i < 4; ++i) corners[i] = add_vertex(zone, mesh, mesh.tets[t][i], all_axes);
-    zone.corners.push_back(corners);
-    hold_to_boundary(zone, mesh, t, corners);
-}
-
-void close(Zone& zone, const Mesh& mesh) {
-    for (std::size_t cell = 0; cell < zone.cells.size(); ++cell)
-        for (int i = 0; i < 4; ++i) {
-            const Tet n = mesh.neighbour[zone.cells[cell]][at(i)];
-            if (!n.exists() || zone.cell_number(n) >= 0) continue;
-            for (int corner : tet_facets[at(i)]) zone.axes[at(zone.corners[cell][at(corner)])] = 0;
-        }
-    zone.place = zone.start;
+void find_balls(Zone& zone) {
     zone.ball_begin.assign(zone.vertices.size() + 1, 0);
     for (const auto& corners : zone.corners)
         for (int v : corners) ++zone.ball_begin[at(v) + 1];
@@ -86,10 +53,32 @@ void close(Zone& zone, const Mesh& mesh) {
     zone.ball_begin.push_back(static_cast<int>(zone.ball.size()));
 }
 
+}  // namespace
+
+void clear(Zone& zone) {
+    zone.holds.clear();
+    zone.cells.clear();
+    zone.corners.clear();
+    zone.vertices.clear();
+    zone.start.clear();
+    zone.axes.clear();
+    zone.number.clear();
+}
+
+void add_held(Zone& zone, const Mesh& mesh, Vertex v) { number_vertex(zone, mesh, v, 0); }
+
+void close(Zone& zone, const Mesh& mesh) {
+    zone.cells.reserve(zone.holds.size());
+    zone.corners.reserve(zone.holds.size());
+    zone.holds.for_each([&](Tet t) { add_cell(zone, mesh, t); });
+    zone.place = zone.start;
+    find_balls(zone);
+}
+
 void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
     clear(zone);
     for (Tet t : cells)
-        if (alive(mesh, t)) add_cell(zone, mesh, t);
+        if (alive(mesh, t)) zone.holds.insert(t);
     close(zone, mesh);
 }
 
@@ -98,9 +87,22 @@ void find_sizes(Zone& zone, const Snapshot& at_time) {
     for_all(zone.place.size(), [&](std::size_t v) { zone.size[v] = target_size(at_time, zone.place[v]); });
 }
 
-double aspect_ratio(const Zone& zone, int cell) { return ratio_at(zone.place, zone.corners[at(cell)]); }
+double aspect_ratio(const Zone& zone, int cell) {
+    const auto& v = zone.corners[at(cell)];
+    return tet_aspect_ratio(zone.place[at(v[0])], zone.place[at(v[1])], zone.place[at(v[2])], zone.place[at(v[3])]);
+}
 
-double start_ratio(const Zone& zone, int cell) { return ratio_at(zone.start, zone.corners[at(cell)]); }
+FourTets four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places) {
+    FourTets tets;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto& v = zone.corners[std::min(first + i, zone.corners.size() - 1)];
+        set(tets.a, i, places[at(v[0])]);
+        set(tets.b, i, places[at(v[1])]);
+        set(tets.c, i, places[at(v[2])]);
+        set(tets.d, i, places[at(v[3])]);
+    }
+    return tets;
+}
 
 void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star) {
     star.clear();

@@ -2,6 +2,8 @@
 
 #include "adapt/adapt.h"
 #include "adapt/star.h"
+#include "base/tetrahedron.h"
+#include "mesh/index_set.h"
 #include "mesh/numbering.h"
 
 namespace kropla {
@@ -10,7 +12,8 @@ namespace kropla {
 /// together in memory, with copies of their places. Nothing in the mesh changes before `write_places`. To be
 /// kept from step to step: what it holds is used again.
 struct Zone {
-    std::vector<Tet> cells;
+    IndexSet<Tet> holds;
+    std::vector<Tet> cells;                   // the same, in ascending order
     std::vector<std::array<int, 4>> corners;  // per cell: numbers of its vertices
     std::vector<Vertex> vertices;
     std::vector<Vec3> start;                  // per vertex: its place in the mesh [m]
@@ -19,24 +22,15 @@ struct Zone {
     std::vector<double> size;                 // per vertex: the target size there [m]
     std::vector<int> ball_begin, ball;        // per vertex, and one more: where its cells stand in `ball`
     std::vector<double> ratio;                // per cell: its aspect ratio at `place`
-    std::optional<std::size_t> turn;          // see has_turn
     Numbering<Vertex> number;                 // of `vertices`
-    Numbering<Tet> cell_number;
 };
 
-/// Most cells and edges that could be better have been tried in vain before: those that have not become worse
-/// are tried again by turns only, by their `name`; always if the zone has no `turn`.
-[[nodiscard]] bool has_turn(const Zone& zone, int name);
-
-/// Empties the zone.
+/// A zone is made in this order: it is emptied; vertices are added that do not slide, with the numbers 0, 1, ...;
+/// `holds` is filled; then it is closed.
 void clear(Zone& zone);
-/// Adds a vertex, which does not slide, if it is not in the zone; returns its number.
-int add_held(Zone& zone, const Mesh& mesh, Vertex v);
-/// Adds a cell and its vertices, if it is not in the zone. Vertices are held by the boundary that the zone's
-/// cells have there.
-void add_cell(Zone& zone, const Mesh& mesh, Tet t);
-/// Once all cells are there: finds the balls. Vertices that have cells out of the zone, or lie on an
-/// interface, are held.
+void add_held(Zone& zone, const Mesh& mesh, Vertex v);
+/// Numbers the vertices and finds the balls. Vertices stay on the faces of the box they lie on; those that have
+/// cells out of the zone, or lie on an interface, are held.
 void close(Zone& zone, const Mesh& mesh);
 
 /// A zone of these cells (those that are alive).
@@ -45,7 +39,8 @@ void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
 void find_sizes(Zone& zone, const Snapshot& at_time);
 
 [[nodiscard]] double aspect_ratio(const Zone& zone, int cell);
-[[nodiscard]] double start_ratio(const Zone& zone, int cell);  // its aspect ratio in the mesh
+/// The corners of four cells from the `first` on, at `places`, one per vertex; past the last cell, that one again.
+[[nodiscard]] FourTets four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places);
 void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star);
 [[nodiscard]] Freedom freedom(const Zone& zone, int vertex);
 
@@ -54,7 +49,8 @@ void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star);
 int optimise_places(Zone& zone, const AdaptOptions& options);
 /// Asks for the aspect ratios of all cells.
 void measure(Zone& zone);
-[[nodiscard]] double safe_fraction(const Zone& zone, int cell, double least);
+/// Do all cells keep a volume of at least `least` of what they have, all the way from `start` to `place`?
+[[nodiscard]] MoveReport check_way(const Zone& zone, double least);
 
 /// As for cells: see adapt.h. The zone's places are those of the mesh.
 Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options);

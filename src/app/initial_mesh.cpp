@@ -29,7 +29,7 @@ Mesh initial_mesh(const Case& it) {
     improve(mesh, all_tets(mesh), at, options);
     repair(mesh, all_tets(mesh), at, options);
     const QualitySummary quality = summarise_quality(mesh);
-    if (quality.max_aspect_ratio <= it.quality.max_aspect_ratio) return compact(mesh).mesh;
+    if (quality.max_aspect_ratio <= it.quality.max_aspect_ratio) return in_spatial_order(mesh);
     const Vec3 place = centroid(mesh, quality.worst);
     throw FloorError(
         fmt::format("the initial mesh has a cell of aspect ratio {:.3g} at ({:.4g}, {:.4g}, {:.4g}) m, above "

@@ -15,25 +15,53 @@ double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return determinant(b - a, c - a, d - a) / 6;
 }
 
+namespace {
+
+inline double square_root(double a) { return std::sqrt(a); }
+using kropla::square_root;
+
+template <class Number>
+struct Shape {
+    Number v6, uu, vv, ww, ratio;
+};
+
 // With u, v, w the edge vectors from one corner and V6 = u . (v x w) six times the volume:
 //     R = |m| / (2 V6),  m = |u|^2 (v x w) + |v|^2 (w x u) + |w|^2 (u x v)
 //     r = V6 / (n1 + n2 + n3 + n4),  n_i twice the areas of the facets; the fourth normal is the sum of the
-//     others R/r = |m| (n1 + n2 + n3 + n4) / (2 V6^2)
+//     others
+//     R/r = |m| (n1 + n2 + n3 + n4) / (2 V6^2)
 // |m| goes under the roots of the areas, which are independent of each other and go through the pipeline
 // together.
+template <class Number>
+inline Shape<Number> shape_of(const Vector3<Number>& u, const Vector3<Number>& v, const Vector3<Number>& w) {
+    const Vector3<Number> vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+    const Number uu = squared_norm(u), vv = squared_norm(v), ww = squared_norm(w);
+    const Number v6 = dot(u, vw);
+    const Number mm = squared_norm(uu * vw + vv * wu + ww * uv);
+    const Number first = square_root(mm * squared_norm(vw));
+    const Number second = square_root(mm * squared_norm(wu));
+    const Number third = square_root(mm * squared_norm(uv));
+    const Number fourth = square_root(mm * squared_norm(vw + wu + uv));
+    return {v6, uu, vv, ww, ((first + second) + (third + fourth)) / (2 * v6 * v6)};
+}
+
+}  // namespace
+
 double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const Vec3 u = b - a, v = c - a, w = d - a;
-    const Vec3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
-    const double uu = squared_norm(u), vv = squared_norm(v), ww = squared_norm(w);
-    const double v6 = dot(u, vw);
-    const bool positive = v6 > 0 && filter::certain(v6, uu, vv, ww);
+    const auto shape = shape_of(b - a, c - a, d - a);
+    const bool positive = shape.v6 > 0 && filter::certain(shape.v6, shape.uu, shape.vv, shape.ww);
     if (!positive && orient3d(a, b, c, d) <= 0) return std::numeric_limits<double>::infinity();
-    const double mm = squared_norm(uu * vw + vv * wu + ww * uv);
-    const double first = std::sqrt(mm * squared_norm(vw));
-    const double second = std::sqrt(mm * squared_norm(wu));
-    const double third = std::sqrt(mm * squared_norm(uv));
-    const double fourth = std::sqrt(mm * squared_norm(vw + wu + uv));
-    return ((first + second) + (third + fourth)) / (2 * v6 * v6);
+    return shape.ratio;
+}
+
+KROPLA_FOR_EACH_PROCESSOR
+void tet_aspect_ratios(const FourTets& tets, Four& ratios) {
+    const auto& [a, b, c, d] = tets;
+    const auto shape = shape_of(b - a, c - a, d - a);
+    ratios = shape.ratio;
+    for (std::size_t i = 0; i < 4; ++i)
+        if (!(shape.v6[i] > 0 && filter::certain(shape.v6[i], shape.uu[i], shape.vv[i], shape.ww[i])))
+            ratios.set(i, tet_aspect_ratio(one_of(a, i), one_of(b, i), one_of(c, i), one_of(d, i)));
 }
 
 // As above with corner b as the origin, so that of u, v, w only u = a - b moves with a; F = |m| N / (2 V6^2),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/vec3.h"
+#include "base/four.h"
 
 #include <array>
 
@@ -12,6 +12,13 @@ namespace kropla {
 /// The aspect ratio R/r of the tet: circumradius by inradius; 3 is perfect. Infinite unless the tet is
 /// positively oriented by the exact predicate.
 [[nodiscard]] double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// The corners of four tets.
+struct FourTets {
+    FourVec3 a, b, c, d;
+};
+/// Their aspect ratios, bit for bit as one by one.
+void tet_aspect_ratios(const FourTets& tets, Four& ratios);
 
 /// R/r and its gradient with respect to the first vertex [1/m].
 struct AspectGradient {

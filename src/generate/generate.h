@@ -46,4 +46,8 @@ struct PointSet {
 /// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform.
 [[nodiscard]] Mesh generate_mesh(const Domain& domain, std::uint64_t seed);
 
+/// The mesh without free slots, its vertices and cells numbered along a Hilbert curve, so that what is near in
+/// space is near in memory.
+[[nodiscard]] Mesh in_spatial_order(const Mesh& mesh);
+
 }  // namespace kropla

@@ -5,6 +5,8 @@
 
 #include "generate/hilbert.h"
 
+#include "generate/generate.h"
+
 #include "base/random.h"
 
 #include <algorithm>
@@ -151,6 +153,33 @@ std::vector<Vertex> in_random_rounds(std::span<const Vertex> order) {
     std::vector<Vertex> result(order.size());
     for (const Vertex v : order) result[place[static_cast<std::size_t>(rounds - 1 - round_of(v))]++] = v;
     return result;
+}
+
+Mesh in_spatial_order(const Mesh& mesh) {
+    std::vector<Vertex> alive_ones;
+    std::vector<Vec3> places;
+    for (Vertex v : mesh.position.indices())
+        if (alive(mesh, v)) {
+            alive_ones.push_back(v);
+            places.push_back(mesh.position[v]);
+        }
+    Array<Vertex, Vertex> vertices;
+    Array<Vertex, std::int32_t> rank(mesh.position.size());
+    for (Vertex place : hilbert_order(places).order) {
+        const Vertex v = alive_ones[static_cast<std::size_t>(place.value)];
+        rank[v] = vertices.push_back(v).value;
+    }
+    // Cells follow their first vertex.
+    Array<Tet, Tet> tets;
+    Array<Tet, std::array<std::int32_t, 4>> ranks(mesh.tets.size());
+    for (Tet t : mesh.tets.indices()) {
+        if (!alive(mesh, t)) continue;
+        tets.push_back(t);
+        std::ranges::transform(mesh.tets[t], ranks[t].begin(), [&](Vertex v) { return rank[v]; });
+        std::ranges::sort(ranks[t]);
+    }
+    std::ranges::sort(tets, {}, [&](Tet t) { return ranks[t]; });
+    return reorder(mesh, std::move(vertices), std::move(tets)).mesh;
 }
 
 }  // namespace kropla

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "mesh/cells.h"
+#include "mesh/index_set.h"
 
 #include <algorithm>
 #include <numeric>
@@ -123,16 +124,24 @@ Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> t
 }
 
 Compacted compact(const Mesh& mesh) {
-    Compacted result;
+    Array<Vertex, Vertex> vertices;
+    Array<Tet, Tet> tets;
+    for (Vertex v : mesh.position.indices())
+        if (alive(mesh, v)) vertices.push_back(v);
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t)) tets.push_back(t);
+    return reorder(mesh, std::move(vertices), std::move(tets));
+}
+
+Compacted reorder(const Mesh& mesh, Array<Vertex, Vertex> old_vertex, Array<Tet, Tet> old_tet) {
+    Compacted result{{}, std::move(old_vertex), std::move(old_tet)};
     Array<Vertex, Vertex> new_vertex(mesh.position.size());
     Array<Tet, Tet> new_tet(mesh.tets.size());
-    for (Vertex v : mesh.position.indices())
-        if (alive(mesh, v)) {
-            new_vertex[v] = result.old_vertex.push_back(v);
-            result.mesh.position.push_back(mesh.position[v]);
-        }
-    for (Tet t : mesh.tets.indices())
-        if (alive(mesh, t)) new_tet[t] = result.old_tet.push_back(t);
+    for (Vertex v : result.old_vertex.indices()) {
+        new_vertex[result.old_vertex[v]] = v;
+        result.mesh.position.push_back(mesh.position[result.old_vertex[v]]);
+    }
+    for (Tet t : result.old_tet.indices()) new_tet[result.old_tet[t]] = t;
 
     for (Tet t : result.old_tet) {
         auto vertices = mesh.tets[t];
@@ -189,12 +198,14 @@ void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::sp
     to.neighbour.resize(from.tets.size());
     to.patch.resize(from.tets.size());
     to.region.resize(from.tets.size());
+    IndexSet<Tet> different;  // their neighbours know them
     for (Tet t : tets) {
         if (!has_slot(from, t)) continue;
-        copy_tet(to, from, t);
+        different.insert(t);
         for (Tet n : from.neighbour[t])
-            if (n.exists()) copy_tet(to, from, n);
+            if (n.exists()) different.insert(n);
     }
+    different.for_each([&](Tet t) { copy_tet(to, from, t); });
     for (Vertex v : at_tets) copy_vertex(to, from, v);
     for (Vertex v : vertices) copy_vertex(to, from, v);
     to.free_tets = from.free_tets;

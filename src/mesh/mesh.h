@@ -87,6 +87,8 @@ struct Compacted {
     Array<Tet, Tet> old_tet;
 };
 [[nodiscard]] Compacted compact(const Mesh& mesh);
+/// The same with vertices and tets in the order given, which holds each that is alive once.
+[[nodiscard]] Compacted reorder(const Mesh& mesh, Array<Vertex, Vertex> vertices, Array<Tet, Tet> tets);
 
 /// Makes `to` equal to `from` where they may differ: in the slots of `tets` and in the places of `vertices`.
 /// Work is proportional to those, and to the free slots.

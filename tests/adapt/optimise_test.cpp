@@ -72,7 +72,7 @@ TEST(OptimisePlacesOfAZone, MakesNoCellBadIfNoneIs) {
 }
 
 TEST(OptimisePlacesOfAZone, LeavesFewBadCellsAndKnowsTheirRatios) {
-    const AdaptOptions options;
+    const AdaptOptions options{.relaxations = 2};  // one is enough for what a step spoils
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Mesh mesh = spoilt_mesh(seed);

@@ -42,7 +42,7 @@ Mesh starting_mesh(const Domain& domain, std::uint64_t seed, const AdaptOptions&
     const Snapshot at = snapshot(domain, 0);
     improve(mesh, all_tets(mesh), at, options);
     repair(mesh, all_tets(mesh), at, options);
-    return compact(mesh).mesh;
+    return in_spatial_order(mesh);
 }
 
 StepCost step_to(MovingMesh& moving, double t) {

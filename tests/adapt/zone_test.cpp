@@ -38,7 +38,7 @@ TEST(Zone, HasTheCellsTheirVerticesAndPlaces) {
     gather(zone, mesh, cells);
     ASSERT_EQ(zone.cells, cells);
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        EXPECT_EQ(zone.cell_number(cells[c]), static_cast<int>(c));
+        EXPECT_TRUE(zone.holds.contains(cells[c]));
         for (std::size_t i = 0; i < 4; ++i)
             EXPECT_EQ(zone.vertices[at(zone.corners[c][i])], mesh.tets[cells[c]][i]);
         EXPECT_EQ(aspect_ratio(zone, static_cast<int>(c)), aspect_ratio(mesh, cells[c]));
@@ -59,7 +59,7 @@ TEST(Zone, BallsAreThoseOfTheMeshWithinTheZone) {
         gather(zone, mesh, random_part(mesh, share, random));
         for (std::size_t v = 0; v < zone.vertices.size(); ++v) {
             auto expected = ball(mesh, zone.vertices[v]);
-            std::erase_if(expected, [&](Tet t) { return zone.cell_number(t) < 0; });
+            std::erase_if(expected, [&](Tet t) { return !zone.holds.contains(t); });
             std::ranges::sort(expected);
             ASSERT_EQ(ball_in(zone, v), expected);
         }
@@ -125,9 +125,10 @@ TEST(Zone, HoldsWhatIsAddedHeld) {
     const auto is_free = [&](Vertex v) { return constraint(mesh, v, ball(mesh, v)).free(); };
     const Vertex v = *std::ranges::find_if(vertices, is_free);
     Zone zone;
-    EXPECT_EQ(add_held(zone, mesh, v), 0);
-    for (Tet t : ball(mesh, v)) add_cell(zone, mesh, t);
+    add_held(zone, mesh, v);
+    for (Tet t : ball(mesh, v)) zone.holds.insert(t);
     close(zone, mesh);
+    EXPECT_EQ(zone.number(v), 0);
     EXPECT_TRUE(freedom(zone, 0).none());
     gather(zone, mesh, ball(mesh, v));
     EXPECT_FALSE(freedom(zone, zone.number(v)).none());
@@ -168,17 +169,38 @@ TEST(Zone, OneThatWasUsedIsAsGoodAsNew) {
     }
 }
 
-TEST(Zone, EachNameHasItsTurnOnce) {
+TEST(Zone, HoldsEachCellOnceInAscendingOrder) {
+    const Mesh mesh = sphere_mesh();
     Zone zone;
-    EXPECT_TRUE(has_turn(zone, 5)) << "always, without turns";
-    for (int name = 0; name < 20; ++name) {
-        int turns = 0;
-        for (std::size_t turn = 100; turn < 108; ++turn) {
-            zone.turn = turn;
-            turns += has_turn(zone, name);
+    gather(zone, mesh, std::array{Tet(7), Tet(2), Tet(7), Tet(90), Tet(2)});
+    EXPECT_EQ(zone.cells, (std::vector{Tet(2), Tet(7), Tet(90)}));
+}
+
+TEST(Zone, ItsWayIsAsSafeAsThatOfTheLeastSafeCell) {
+    const Mesh mesh = sphere_mesh();
+    SCOPED_TRACE("seed 4");
+    Random random{4};
+    int arrived = 0, stopped = 0;
+    for (double reach : {0.01, 0.05, 0.1, 0.3}) {
+        Zone zone;
+        gather(zone, mesh, all_tets(mesh, surroundings));
+        Array<Vertex, Vec3> displacement(mesh.position.size());
+        const auto up_to = [&] { return random.uniform(-reach, reach); };
+        for (std::size_t v = 0; v < zone.vertices.size(); ++v) {
+            const Vec3 way = {up_to(), up_to(), up_to()};
+            zone.place[v] += way;
+            displacement[zone.vertices[v]] = way;
         }
-        EXPECT_EQ(turns, 1) << name;
+        const MoveReport report = check_way(zone, 0.05);
+        EXPECT_NEAR(report.fraction, safe_fraction(mesh, zone.cells, displacement, 0.05), 1e-4);
+        EXPECT_EQ(report.arrived, report.fraction == 1);
+        (report.arrived ? arrived : stopped)++;
+        if (!report.arrived) {
+            EXPECT_NEAR(report.fraction, safe_fraction(mesh, {&report.limiting, 1}, displacement, 0.05), 1e-4);
+        }
     }
+    EXPECT_GE(arrived, 1);
+    EXPECT_GE(stopped, 1);
 }
 
 }  // namespace

@@ -46,6 +46,27 @@ TEST(TetShape, CornerOfACube) {
     EXPECT_LT(distance(tet_circumcentre(t[0], t[1], t[2], t[3]), Vec3{0.5, 0.5, 0.5}), 1e-15);
 }
 
+TEST(TetShape, FourAtOnceHaveTheBitsOfEach) {
+    SCOPED_TRACE("seed 4");
+    Random random{seed};
+    for (int round = 0; round < 2000; ++round) {
+        std::array<Corners, 4> each;
+        FourTets four;
+        for (std::size_t i = 0; i < 4; ++i) {
+            Corners& t = each[i] = random_tet(random);
+            if (random.below(8) == 0) std::swap(t[0], t[1]);
+            if (random.below(8) == 0) t[3] = t[0] + random.uniform() * (t[1] - t[0]) + random.uniform() * (t[2] - t[0]);
+            set(four.a, i, t[0]);
+            set(four.b, i, t[1]);
+            set(four.c, i, t[2]);
+            set(four.d, i, t[3]);
+        }
+        Four ratios;
+        tet_aspect_ratios(four, ratios);
+        for (std::size_t i = 0; i < 4; ++i) ASSERT_EQ(ratios[i], aspect_ratio(each[i])) << "round " << round;
+    }
+}
+
 TEST(TetShape, FlatOrTurnedIsInfinite) {
     const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_EQ(aspect_ratio({regular[1], regular[0], regular[2], regular[3]}), infinity);

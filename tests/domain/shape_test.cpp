@@ -14,7 +14,7 @@ namespace {
 /// sum (x_i / a_i)^2 - 1 in the shape's own axes: 0 on the surface, negative inside.
 double level(const Shape& shape, const Vec3& x) {
     const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
-    return squared_norm({p.x / shape.semi_axes.x, p.y / shape.semi_axes.y, p.z / shape.semi_axes.z}) - 1;
+    return squared_norm(Vec3{p.x / shape.semi_axes.x, p.y / shape.semi_axes.y, p.z / shape.semi_axes.z}) - 1;
 }
 
 /// The direction in which `level` rises.

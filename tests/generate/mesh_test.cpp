@@ -172,3 +172,31 @@ TEST(InitialMesh, RefusesBodiesThatDoNotFit) {
                  DomainError);
     EXPECT_THROW((void)generate_mesh(small_domain({ball({0, 0, 4}, 0.39)}), 1), DomainError);  // too coarse
 }
+
+namespace {
+
+/// The mean of how far apart in memory two cells are that share a facet.
+double mean_distance_of_neighbours(const Mesh& mesh) {
+    double sum = 0, count = 0;
+    for (Tet t : all_tets(mesh))
+        for (Tet n : mesh.neighbour[t])
+            if (n.exists()) {
+                sum += std::abs(n.value - t.value);
+                ++count;
+            }
+    return sum / count;
+}
+
+}  // namespace
+
+TEST(InSpatialOrder, IsTheSameMeshWithNeighboursNearInMemory) {
+    const Mesh mesh = generate_mesh(small_domain({ball({0, 0, 4}, 1)}), 1);
+    const Mesh ordered = in_spatial_order(mesh);
+    EXPECT_EQ(verify(ordered), "");
+    EXPECT_EQ(count_tets(ordered), count_tets(mesh));
+    EXPECT_EQ(count_vertices(ordered), count_vertices(mesh));
+    for (Region region : {surroundings, Region(1)})
+        EXPECT_NEAR(region_volume(ordered, region), region_volume(mesh, region), 1e-12 * region_volume(mesh, region));
+    EXPECT_LT(mean_distance_of_neighbours(ordered), 0.5 * mean_distance_of_neighbours(compact(mesh).mesh));
+    EXPECT_EQ(in_spatial_order(ordered), ordered);
+}

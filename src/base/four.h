@@ -1,0 +1,53 @@
+#pragma once
+
+#include "base/vec3.h"
+
+/// Before a function: it is compiled for processors of several generations, and at run time the one is taken
+/// that suits. None of them fuses or reorders arithmetic, so that the bits are the same.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define KROPLA_FOR_EACH_PROCESSOR [[gnu::target_clones("avx2", "default")]]
+#else
+#define KROPLA_FOR_EACH_PROCESSOR
+#endif
+
+namespace kropla {
+
+/// Four numbers, on which arithmetic works at once; each with the bits that it would have by itself.
+struct alignas(32) Four {
+    using Register [[gnu::vector_size(32)]] = double;
+    Register all{};
+
+    Four() = default;
+    Four(double a) : all{a, a, a, a} {}
+    explicit Four(const Register& a) : all(a) {}
+
+    double operator[](std::size_t which) const { return all[which]; }
+    void set(std::size_t which, double a) { all[which] = a; }
+
+    friend Four operator+(const Four& a, const Four& b) { return Four(a.all + b.all); }
+    friend Four operator-(const Four& a, const Four& b) { return Four(a.all - b.all); }
+    friend Four operator*(const Four& a, const Four& b) { return Four(a.all * b.all); }
+    friend Four operator/(const Four& a, const Four& b) { return Four(a.all / b.all); }
+};
+
+inline Four greater(const Four& a, const Four& b) { return Four(a.all > b.all ? a.all : b.all); }
+
+inline Four square_root(const Four& a) {
+    Four root;
+    for (std::size_t i = 0; i < 4; ++i) root.all[i] = std::sqrt(a.all[i]);
+    return root;
+}
+
+/// Four points or vectors at once.
+using FourVec3 = Vector3<Four>;
+
+inline FourVec3 four_times(const Vec3& a) { return {a.x, a.y, a.z}; }
+
+inline void set(FourVec3& fours, std::size_t which, const Vec3& a) {
+    fours.x.set(which, a.x);
+    fours.y.set(which, a.y);
+    fours.z.set(which, a.z);
+}
+inline Vec3 one_of(const FourVec3& fours, std::size_t which) { return {fours.x[which], fours.y[which], fours.z[which]}; }
+
+}  // namespace kropla
