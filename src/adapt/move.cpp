@@ -27,7 +27,8 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// The motion of one body over a step.
 struct Travel {
     Shape from, to;
-    double reach;  // [m]
+    double reach;     // [m]
+    double far_away;  // from the centre, nothing beyond is in reach [m]
 
     /// Where a point fixed to the body would go from `x`.
     [[nodiscard]] Vec3 displacement(const Vec3& x) const {
@@ -42,7 +43,7 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
         const Shape from = shape_at(body, t0);
         const double size = std::max({from.semi_axes.x, from.semi_axes.y, from.semi_axes.z});
         const double reach = std::max(reach_in_body_sizes * size, least_reach_in_sizes * domain.size.surface);
-        result.push_back({from, shape_at(body, t1), reach});
+        result.push_back({from, shape_at(body, t1), reach, reach + size});
     }
     return result;
 }
@@ -174,8 +175,7 @@ std::optional<Tet> tet_beside(const Mesh& mesh, std::span<const Vertex> body) {
 /// Is `x` so far from all bodies that none of them can move it? Told from the balls that hold them.
 bool out_of_reach(std::span<const Travel> travels, const Vec3& x) {
     return std::ranges::none_of(travels, [&](const Travel& travel) {
-        const Vec3& axes = travel.from.semi_axes;
-        return distance(travel.from.centre, x) < travel.reach + std::max({axes.x, axes.y, axes.z});
+        return squared_norm(x - travel.from.centre) < travel.far_away * travel.far_away;
     });
 }
 
@@ -183,6 +183,7 @@ bool out_of_reach(std::span<const Travel> travels, const Vec3& x) {
 /// the bodies.
 void find_reached(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
                   IndexSet<Tet>& found) {
+    constexpr std::size_t soon = 8;
     std::vector<Tet> front;
     const auto add = [&](Tet t) {
         if (!found.contains(t) && mesh.region[t] == surroundings) {
@@ -194,6 +195,10 @@ void find_reached(const Mesh& mesh, std::span<const Travel> travels, std::span<c
         if (const auto t = tet_beside(mesh, body)) add(*t);
     const auto is_out = [&](Vertex v) { return out_of_reach(travels, mesh.position[v]); };
     for (std::size_t i = 0; i < front.size(); ++i) {
+        if (i + soon < front.size()) {  // it takes long to come from memory
+            __builtin_prefetch(&mesh.tets[front[i + soon]]);
+            __builtin_prefetch(&mesh.neighbour[front[i + soon]]);
+        }
         if (std::ranges::all_of(mesh.tets[front[i]], is_out)) continue;
         for (Tet n : mesh.neighbour[front[i]])
             if (n.exists()) add(n);

@@ -69,21 +69,25 @@ std::vector<int> vertices_of_worse(const Zone& zone, double above) {
     return vertices;
 }
 
-/// Takes the vertices of cells worse than `above` back to `places`.
-int retreat(Zone& zone, const std::vector<Vec3>& places, double above) {
-    int count = 0;
-    for (int v : vertices_of_worse(zone, above)) {
-        if (zone.place[at(v)] == places[at(v)]) continue;
-        zone.place[at(v)] = places[at(v)];
-        measure_ball(zone, v);
-        ++count;
-    }
-    return count;
-}
-
 std::span<const int> ball_of(const Zone& zone, int v) {
     return std::span(zone.ball).subspan(at(zone.ball_begin[at(v)]),
                                         at(zone.ball_begin[at(v) + 1] - zone.ball_begin[at(v)]));
+}
+
+/// Takes the vertices of cells worse than `above` back to `places`. Returns whether there were any.
+bool retreat(Zone& zone, const std::vector<Vec3>& places, double above) {
+    std::vector<char> has_moved(zone.cells.size(), false);
+    bool any = false;
+    for (int v : vertices_of_worse(zone, above)) {
+        if (zone.place[at(v)] == places[at(v)]) continue;
+        zone.place[at(v)] = places[at(v)];
+        for (int c : ball_of(zone, v)) has_moved[at(c)] = true;
+        any = true;
+    }
+    for_all(any ? has_moved.size() : 0, [&](std::size_t c) {
+        if (has_moved[c] != 0) zone.ratio[c] = aspect_ratio(zone, static_cast<int>(c));
+    });
+    return any;
 }
 
 /// Takes those of `vertices` out, in order, that share no cell with each other.
@@ -139,7 +143,7 @@ int optimise_places(Zone& zone, const AdaptOptions& options) {
     const std::vector<Vec3> moved = zone.place;
     for (int i = 0; i < options.relaxations; ++i) equalise_volumes(zone);
     measure(zone);
-    for (int i = 0; i < most_retreats && retreat(zone, moved, options.good_enough) > 0; ++i) {}
+    for (int i = 0; i < most_retreats && retreat(zone, moved, options.good_enough); ++i) {}
 
     return optimise_worst(zone, options);
 }

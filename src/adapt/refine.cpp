@@ -137,8 +137,9 @@ std::vector<WrongEdge> wrong_edges(const Zone& zone, const AdaptOptions& o) {
             const auto [first, second] = std::minmax(zone.vertices[a], zone.vertices[b]);
             wrong.push_back({{first, second}, zone.cells[cell], std::sqrt(square) / size});
         }
-    std::ranges::sort(wrong, {}, [](const WrongEdge& w) {
-        return std::tuple(w.ratio > 1, w.ratio > 1 ? -w.ratio : w.ratio, w.edge.a, w.edge.b, w.cell);
+    const auto rank = [](double ratio) { return ratio > 1 ? 1 + 1 / ratio : ratio; };
+    std::ranges::sort(wrong, {}, [&](const WrongEdge& w) {
+        return std::tuple(rank(w.ratio), w.edge.a, w.edge.b, w.cell);
     });
     const auto repeated = std::ranges::unique(wrong, {}, &WrongEdge::edge);
     wrong.erase(repeated.begin(), repeated.end());

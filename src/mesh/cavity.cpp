@@ -10,12 +10,24 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// A facet of a removed or of an added tet.
+/// A facet of a removed or of an added tet, in two words, as many are sorted: its vertices in ascending order;
+/// whether its tet is added; which of the removed or added ones that is; its corner.
 struct Side {
-    std::array<Vertex, 3> key;  // ascending
-    int corner;
-    bool is_added;
-    std::size_t which;  // of the removed or of the added tets
+    std::uint64_t first, second;
+
+    Side(const std::array<Vertex, 3>& vertices, bool added, std::size_t tet, int at_corner)
+        : first(word(vertices[0].value) << 32 | word(vertices[1].value)),
+          second(word(vertices[2].value) << 32 | word(added) << 31 | word(tet) << 2 | word(at_corner)) {}
+    [[nodiscard]] int corner() const { return static_cast<int>(second & 3); }
+    [[nodiscard]] std::size_t which() const { return second >> 2 & (most_tets - 1); }
+    [[nodiscard]] bool is_added() const { return (second >> 31 & 1) != 0; }
+    [[nodiscard]] bool is_same_facet(const Side& b) const { return first == b.first && second >> 32 == b.second >> 32; }
+    auto operator<=>(const Side&) const = default;
+
+    static constexpr std::size_t most_tets = std::size_t{1} << 29;
+
+private:
+    static std::uint64_t word(auto part) { return static_cast<std::uint64_t>(part); }
 };
 
 /// A facet of an added tet and what lies across it.
@@ -60,15 +72,11 @@ std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity) {
     sides.reserve(4 * (cavity.removed.size() + cavity.added.size()));
     for (int corner = 0; corner < 4; ++corner) {
         for (std::size_t i = 0; i < cavity.removed.size(); ++i)
-            sides.push_back({ascending(mesh.tets[cavity.removed[i]], corner), corner, false, i});
+            sides.emplace_back(ascending(mesh.tets[cavity.removed[i]], corner), false, i, corner);
         for (std::size_t i = 0; i < cavity.added.size(); ++i)
-            sides.push_back({ascending(cavity.added[i].vertices, corner), corner, true, i});
+            sides.emplace_back(ascending(cavity.added[i].vertices, corner), true, i, corner);
     }
-    std::ranges::sort(sides, [](const Side& a, const Side& b) {
-        if (a.key != b.key) return a.key < b.key;
-        if (a.is_added != b.is_added) return b.is_added;
-        return a.which < b.which;
-    });
+    std::ranges::sort(sides);
     return sides;
 }
 
@@ -92,20 +100,20 @@ void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> be
                 std::span<const Side> after, std::span<const Tet> names, std::vector<Join>& joins) {
     if (before.size() > 2 || after.size() > 2 || (before.size() == 1 && after.size() == 2))
         throw std::logic_error("replace_cells: a facet of the cavity is used too often");
-    const auto outer = [&](const Side& s) { return Facet{cavity.removed[s.which], s.corner}; };
+    const auto outer = [&](const Side& s) { return Facet{cavity.removed[s.which()], s.corner()}; };
     if (after.size() == 2) {
-        joins.push_back({after[0].which, after[0].corner, names[after[1].which], -1, Patch{}});
-        joins.push_back({after[1].which, after[1].corner, names[after[0].which], -1, Patch{}});
+        joins.push_back({after[0].which(), after[0].corner(), names[after[1].which()], -1, Patch{}});
+        joins.push_back({after[1].which(), after[1].corner(), names[after[0].which()], -1, Patch{}});
     } else if (after.size() == 1 && before.size() == 1) {
         const Facet f = outer(before[0]);
         const Tet n = mesh.neighbour[f.tet][at(f.corner)];
-        joins.push_back({after[0].which, after[0].corner, n, n.exists() ? mirror_corner(mesh, f) : -1,
+        joins.push_back({after[0].which(), after[0].corner(), n, n.exists() ? mirror_corner(mesh, f) : -1,
                          mesh.patch[f.tet][at(f.corner)]});
     } else if (after.size() == 1) {
-        const Patch patch = cavity.added[after[0].which].patch[at(after[0].corner)];
+        const Patch patch = cavity.added[after[0].which()].patch[at(after[0].corner())];
         if (!patch.exists())
             throw std::logic_error("replace_cells: an added facet has no other side and no patch");
-        joins.push_back({after[0].which, after[0].corner, Tet{}, -1, patch});
+        joins.push_back({after[0].which(), after[0].corner(), Tet{}, -1, patch});
     } else if (before.size() == 1) {
         const Facet f = outer(before[0]);
         if (mesh.neighbour[f.tet][at(f.corner)].exists())
@@ -117,11 +125,10 @@ std::vector<Join> join_facets(const Mesh& mesh, const Cavity& cavity, std::span<
     const auto sides = sides_by_key(mesh, cavity);
     std::vector<Join> joins;
     joins.reserve(4 * cavity.added.size());
-    const auto same_facet = [](const Side& a, const Side& b) { return a.key == b.key; };
     for (auto begin = sides.begin(); begin != sides.end();) {
         auto added = begin, end = begin;
-        while (end != sides.end() && same_facet(*begin, *end)) {
-            if (!end->is_added) added = end + 1;
+        while (end != sides.end() && begin->is_same_facet(*end)) {
+            if (!end->is_added()) added = end + 1;
             ++end;
         }
         join_facet(mesh, cavity, {begin, added}, {added, end}, names, joins);

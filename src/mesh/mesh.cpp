@@ -186,11 +186,19 @@ void copy_tet(Mesh& to, const Mesh& from, Tet t) {
 }  // namespace
 
 void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::span<const Vertex> vertices) {
-    std::vector<Vertex> at_tets;
+    IndexSet<Vertex> different;
+    for (Vertex v : vertices) different.insert(v);
     for (const Mesh* mesh : std::initializer_list<const Mesh*>{&to, &from})
         for (Tet t : tets)
             if (has_slot(*mesh, t) && alive(*mesh, t))
-                at_tets.insert(at_tets.end(), mesh->tets[t].begin(), mesh->tets[t].end());
+                for (Vertex v : mesh->tets[t]) different.insert(v);
+    IndexSet<Tet> different_tets;  // their neighbours know them
+    for (Tet t : tets) {
+        if (!has_slot(from, t)) continue;
+        different_tets.insert(t);
+        for (Tet n : from.neighbour[t])
+            if (n.exists()) different_tets.insert(n);
+    }
     to.position.resize(from.position.size());
     to.tet_at.resize(from.tet_at.size());
     to.layer_at.resize(from.layer_at.size());
@@ -198,16 +206,8 @@ void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::sp
     to.neighbour.resize(from.tets.size());
     to.patch.resize(from.tets.size());
     to.region.resize(from.tets.size());
-    IndexSet<Tet> different;  // their neighbours know them
-    for (Tet t : tets) {
-        if (!has_slot(from, t)) continue;
-        different.insert(t);
-        for (Tet n : from.neighbour[t])
-            if (n.exists()) different.insert(n);
-    }
-    different.for_each([&](Tet t) { copy_tet(to, from, t); });
-    for (Vertex v : at_tets) copy_vertex(to, from, v);
-    for (Vertex v : vertices) copy_vertex(to, from, v);
+    different.for_each([&](Vertex v) { copy_vertex(to, from, v); });
+    different_tets.for_each([&](Tet t) { copy_tet(to, from, t); });
     to.free_tets = from.free_tets;
     to.free_vertices = from.free_vertices;
 }

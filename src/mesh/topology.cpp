@@ -63,17 +63,42 @@ std::vector<Tet> all_tets(const Mesh& mesh, Region only) {
     return tets;
 }
 
+namespace {
+
+/// The tets of a list that grows, to be found again: a small table, past whose room the list is looked through.
+class Seen {
+public:
+    explicit Seen(const std::vector<Tet>& list) : list_(list) { slots_.fill(Tet{}); }
+
+    /// Whether `t` is not in the list yet; it is about to be.
+    bool add(Tet t) {
+        if (list_.size() >= room) return std::ranges::find(list_, t) == list_.end();
+        std::size_t slot = static_cast<std::size_t>(t.value) % slots_.size();
+        for (; slots_[slot].exists(); slot = (slot + 1) % slots_.size())
+            if (slots_[slot] == t) return false;
+        slots_[slot] = t;
+        return true;
+    }
+
+private:
+    static constexpr std::size_t room = 64;
+    const std::vector<Tet>& list_;
+    std::array<Tet, 2 * room> slots_;
+};
+
+}  // namespace
+
 void ball(const Mesh& mesh, Vertex v, std::vector<Tet>& tets) {
     tets.clear();
     if (!mesh.tet_at[v].exists()) return;
+    Seen seen(tets);
+    seen.add(mesh.tet_at[v]);
     tets.push_back(mesh.tet_at[v]);
-    // A ball is small (about 24 tets): looking through the list beats any set.
     for (std::size_t i = 0; i < tets.size(); ++i) {
         const Tet t = tets[i];
         for (int corner = 0; corner < 4; ++corner) {
             const Tet n = mesh.neighbour[t][at(corner)];
-            if (!n.exists() || mesh.tets[t][at(corner)] == v) continue;
-            if (std::ranges::find(tets, n) == tets.end()) tets.push_back(n);
+            if (n.exists() && mesh.tets[t][at(corner)] != v && seen.add(n)) tets.push_back(n);
         }
     }
 }
