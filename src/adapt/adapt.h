@@ -92,7 +92,7 @@ inline constexpr int longest_ring = 9;
 
 struct AdaptOptions {
     int relaxations = 1;              // sweeps that equalise volumes as the mesh moves
-    double swap_above = 3.4;          // [-] R/r: worse cells are swapped away where that lowers the energy
+    double swap_above = 3.8;          // [-] R/r: worse cells are swapped away where that lowers the energy
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
     double passing = 50.0;            // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for

@@ -53,7 +53,10 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
 /// is as h^3.
 double felt(const SizeField& size, double distance, double reach) {
     if (distance >= reach) return 0;
-    const auto volume_at = [&](double d) { return std::pow(size.surface + size.growth * d, 3); };
+    const auto volume_at = [&](double d) {
+        const double h = size.surface + size.growth * d;
+        return h * h * h;
+    };
     const double here = volume_at(distance), near = volume_at(0), far = volume_at(reach);
     if (far == near) return 1 - distance / reach;
     return 1 - (here - near) / (far - near);

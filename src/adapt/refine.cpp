@@ -112,6 +112,10 @@ public:
     [[nodiscard]] double ratio(Edge e) const {
         return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size(e.a) + size(e.b)) / 2);
     }
+    [[nodiscard]] bool is_longer(Edge e, double ratio) const {
+        const double longest = ratio * (size(e.a) + size(e.b)) / 2;
+        return squared_norm(mesh_.position[e.a] - mesh_.position[e.b]) > longest * longest;
+    }
 
 private:
     [[nodiscard]] double size(Vertex v) const {
@@ -170,9 +174,11 @@ void ball_at_start(const Mesh& mesh, const Zone& zone, Vertex v, std::vector<Tet
 /// Would an edge from `to` to a neighbour of `from` become too long?
 bool makes_long_edge(const Mesh& mesh, std::span<const Tet> around, Vertex from, Vertex to, const EdgeMeasure& measure,
                      double longest) {
-    for (Tet t : around)
+    for (Tet t : around) {
+        if (corner_of(mesh, t, to) >= 0) continue;
         for (Vertex v : mesh.tets[t])
-            if (v != from && v != to && measure.ratio({v, to}) > longest) return true;
+            if (v != from && measure.is_longer({v, to}, longest)) return true;
+    }
     return false;
 }
 
