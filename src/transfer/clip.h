@@ -9,19 +9,18 @@ namespace kropla {
 // corners 1, 2, 3; that at corner 0 is 1 - a1 - a2 - a3. The whole tet has volume 1 in these units, whatever
 // its shape.
 
-/// A convex polyhedron, three edges at every vertex (where more meet, vertices stand there several times).
+/// A convex polyhedron, as tets that fill it; their corners stand in any order.
 struct TetPart {
-    static constexpr int most_vertices = 24;  // cut by four planes it has 12, and never twice as many
-    int count = 0;                            // 0: empty
-    std::array<std::array<double, 3>, most_vertices> place;
-    std::array<std::array<std::int8_t, 3>, most_vertices> next;  // along the edges, in one sense of turning
+    static constexpr int most_tets = 81;  // cut by four planes: each makes at most three tets of one
+    int count = 0;                        // 0: empty
+    std::array<std::array<std::array<double, 3>, 4>, most_tets> tets;
 };
 
 [[nodiscard]] TetPart whole_tet();
 
 /// Takes away the side of a plane on which a linear function, given by its values at the tet's four corners,
 /// is negative. Returns whether there was any such side. The plane of the values and that of their negatives
-/// give two parts that share their cut to the bit: together they are what was there.
+/// give two parts that share the corners of their cut to the bit: together they are what was there.
 bool cut(TetPart& part, const std::array<double, 4>& at_corners);
 
 /// The integrals of products of two barycentric coordinates over a part, by the volume of the tet. They sum
