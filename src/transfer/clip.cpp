@@ -8,6 +8,7 @@
 
 #include "transfer/clip.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kropla {
@@ -31,23 +32,23 @@ Place crossing(const Corner& inside, const Corner& outside) {
     return x;
 }
 
-/// The pieces of a tet within the plane, at the end of the part. `corner`: those inside first.
-void add_inside(TetPart& part, const std::array<Corner, 4>& corner, int outside) {
+/// Adds the pieces of a tet within the plane. `corner`: those inside first.
+void add_inside(TetPart& part, const std::array<Corner, 4>& corner, std::size_t inside) {
     const auto add = [&](const Place& a, const Place& b, const Place& c, const Place& d) {
         part.tets[at(part.count++)] = {a, b, c, d};
     };
     const auto& [a, b, c, d] = corner;
     const Place ad = crossing(a, d);
-    if (outside == 3) {
+    if (inside == 1) {
         add(a.place, crossing(a, b), crossing(a, c), ad);
-    } else if (outside == 2) {
-        const Place bd = crossing(b, d);
-        if (b.value > 0) {
-            const Place bc = crossing(b, c);
-            add(a.place, b.place, bc, bd);
-            if (a.value > 0) add(a.place, crossing(a, c), bc, bd);
+    } else if (inside == 2) {
+        const Place bc = crossing(b, c), bd = crossing(b, d);
+        if (b.value > 0) add(a.place, b.place, bc, bd);
+        if (a.value > 0) {
+            const Place ac = crossing(a, c);
+            if (b.value > 0) add(a.place, ac, bc, bd);
+            add(a.place, ac, ad, bd);
         }
-        if (a.value > 0) add(a.place, crossing(a, c), ad, bd);
     } else {
         const Place bd = crossing(b, d), cd = crossing(c, d);
         if (c.value > 0) add(a.place, b.place, c.place, cd);
@@ -70,18 +71,20 @@ bool cut(TetPart& part, const std::array<double, 4>& at_corners) {
     const Place slope = {at_corners[1] - start, at_corners[2] - start, at_corners[3] - start};
     bool any = false;
     for (int t = part.count - 1; t >= 0; --t) {  // those behind it are done
+        const auto& tet = part.tets[at(t)];
+        std::array<double, 4> value;
+        for (std::size_t k = 0; k < 4; ++k)
+            value[k] = start + (slope[0] * tet[k][0] + slope[1] * tet[k][1] + slope[2] * tet[k][2]);
+        const double least = std::min(std::min(value[0], value[1]), std::min(value[2], value[3])),
+                     most = std::max(std::max(value[0], value[1]), std::max(value[2], value[3]));
+        if (least >= 0) continue;
+        any = true;
         std::array<Corner, 4> corner;
         std::size_t inside = 0, end = 4;
-        bool within = false;
-        for (const Place& x : part.tets[at(t)]) {
-            const double value = start + (slope[0] * x[0] + slope[1] * x[1] + slope[2] * x[2]);
-            corner[value < 0 ? --end : inside++] = {x, value};
-            within = within || value > 0;
-        }
-        if (inside == 4) continue;
-        any = true;
+        if (most > 0)
+            for (std::size_t k = 0; k < 4; ++k) corner[value[k] < 0 ? --end : inside++] = {tet[k], value[k]};
         part.tets[at(t)] = part.tets[at(--part.count)];
-        if (within) add_inside(part, corner, static_cast<int>(4 - inside));
+        if (most > 0) add_inside(part, corner, inside);
     }
     return any;
 }

@@ -134,25 +134,35 @@ struct Meeting {
     TetMoments common{};
 };
 
+/// How many tets a plane leaves of one, given how many corners are outside and inside it.
+constexpr int pieces(int outside, int inside) {
+    return outside == 0 ? 0 : inside == 1 ? 1 : outside + inside - 1;
+}
+
 Meeting meet(const Distances& d) {
     Meeting meeting;
-    unsigned crossing = 0;
-    for (int i = 0; i < 4; ++i) {
-        const auto [least, most] = std::minmax({d[at(i)][0], d[at(i)][1], d[at(i)][2], d[at(i)][3]});
-        if (most <= 0) return meeting;
-        if (least < 0) crossing |= 1u << i;
+    std::array<int, 4> left;  // of the whole tet by each plane; 0: it does not cross
+    for (std::size_t i = 0; i < 4; ++i) {
+        int outside = 0, within = 0;
+        for (double x : d[i]) {
+            outside += x < 0;
+            within += x > 0;
+        }
+        if (within == 0) return meeting;
+        left[i] = pieces(outside, within);
     }
     meeting.met = true;
-    if (crossing == 0) {
+    if (left == std::array{0, 0, 0, 0}) {
         meeting.common = whole_moments();
         return meeting;
     }
     TetPart part = whole_tet();
-    for (int i = 0; i < 4; ++i) {
-        if ((crossing >> i & 1u) == 0 || !cut(part, d[at(i)])) continue;
-        if (part.count == 0) return {};
-        meeting.crossed |= 1u << i;
-    }
+    for (int most = 1; most <= 3; ++most)  // first the planes that leave little
+        for (int i = 0; i < 4; ++i) {
+            if (left[at(i)] != most || !cut(part, d[at(i)])) continue;
+            if (part.count == 0) return {};
+            meeting.crossed |= 1u << i;
+        }
     meeting.common = moments(part);
     return meeting;
 }
@@ -307,12 +317,11 @@ private:
         sum_ += share;
         shares_.push_back({i, share});
         for (std::size_t corner = 0; corner < 4; ++corner) {
+            std::array<double, 4> product{};
+            for (std::size_t l = 0; l < 4; ++l)
+                for (std::size_t k = 0; k < 4; ++k) product[k] += meeting.common[l][k] * d[corner][l];
             auto& weight = weights_of(old.vertices[corner]);
-            for (std::size_t k = 0; k < 4; ++k) {
-                double product = 0;
-                for (std::size_t l = 0; l < 4; ++l) product += meeting.common[k][l] * d[corner][l];
-                weight[k] += product * old.inverse_height[corner];
-            }
+            for (std::size_t k = 0; k < 4; ++k) weight[k] += product[k] * old.inverse_height[corner];
         }
         return meeting.crossed;
     }
