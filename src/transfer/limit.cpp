@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace kropla {
 namespace {
@@ -26,12 +27,12 @@ public:
     }
 
     /// Gives `excess` of the integral to the vertices, as far as they have room. Returns what is left of it.
-    double give(double excess, std::span<const std::size_t> to) {
+    double give(double excess, std::span<const std::int32_t> to) {
         double capacity = 0;
-        for (std::size_t i : to) capacity += block_.mass[i] * room(i, excess);
+        for (std::int32_t i : to) capacity += block_.mass[at(i)] * room(at(i), excess);
         if (capacity == 0) return excess;
         const double share = std::min(1.0, excess / capacity);
-        for (std::size_t i : to) x_[i] += share * room(i, excess);
+        for (std::int32_t i : to) x_[at(i)] += share * room(at(i), excess);
         return share < 1 ? 0 : excess - capacity;
     }
 
@@ -40,17 +41,6 @@ private:
     const ValueBounds& bounds_;
     std::vector<double>& x_;
 };
-
-std::vector<std::size_t> neighbours(const MassBlock& block, const CellsAtFree& cells, std::size_t i) {
-    std::vector<std::size_t> found;
-    for (std::int32_t c : cells.of(i))
-        for (std::int32_t u : block.cells[at(c)].unknown)
-            if (u >= 0 && at(u) != i) found.push_back(at(u));
-    std::ranges::sort(found);
-    const auto repeated = std::ranges::unique(found);
-    found.erase(repeated.begin(), repeated.end());
-    return found;
-}
 
 }  // namespace
 
@@ -66,13 +56,12 @@ Limited limit(const MassBlock& block, const ValueBounds& bounds, std::vector<dou
         excess.push_back(block.mass[i] * (unlimited[i] - x[i]));
     }
     Spreading spreading(block, bounds, x);
-    const CellsAtFree cells = cells_at_free(block);
     Limited result;
     for (std::size_t k = 0; k < out.size(); ++k)
-        result.left += spreading.give(excess[k], neighbours(block, cells, out[k]));
+        result.left += spreading.give(excess[k], block.rows.columns(out[k]));
     if (result.left != 0) {
-        std::vector<std::size_t> all(x.size());
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+        std::vector<std::int32_t> all(x.size());
+        std::iota(all.begin(), all.end(), 0);
         result.left = spreading.give(result.left, all);
     }
     for (std::size_t i = 0; i < x.size(); ++i)

@@ -40,18 +40,61 @@ void number_unknowns(const Mesh& after, const SlotMap& held, MassBlock& block) {
         }
 }
 
-/// y = M x; both have one place more than there are unknowns, for the corners that are held.
-void multiply(const MassBlock& block, const std::vector<double>& x, std::vector<double>& y) {
-    std::ranges::fill(y, 0.0);
-    const std::size_t none = block.free.size();
-    for (const MassCell& cell : block.cells) {
-        std::array<std::size_t, 4> at;
-        for (std::size_t k = 0; k < 4; ++k)
-            at[k] = cell.unknown[k] < 0 ? none : static_cast<std::size_t>(cell.unknown[k]);
-        const double scale = cell.volume / 20, sum = (x[at[0]] + x[at[1]]) + (x[at[2]] + x[at[3]]);
-        for (std::size_t k = 0; k < 4; ++k) y[at[k]] += scale * (sum + x[at[k]]);
+/// The cells of the block at each of its free vertices.
+struct CellsAtFree {
+    std::vector<std::uint32_t> end;   // per free vertex
+    std::vector<std::int32_t> cells;  // places in MassBlock::cells
+};
+
+CellsAtFree cells_at_free(const MassBlock& block) {
+    CellsAtFree at;
+    at.end.assign(block.free.size(), 0);
+    const auto for_each = [&](const auto& visit) {
+        for (std::size_t c = 0; c < block.cells.size(); ++c)
+            for (std::int32_t u : block.cells[c].unknown)
+                if (u >= 0) visit(static_cast<std::size_t>(u), static_cast<std::int32_t>(c));
+    };
+    for_each([&](std::size_t u, std::int32_t) { ++at.end[u]; });
+    std::exclusive_scan(at.end.begin(), at.end.end(), at.end.begin(), 0u);
+    at.cells.resize(4 * block.cells.size());
+    for_each([&](std::size_t u, std::int32_t c) { at.cells[at.end[u]++] = c; });
+    return at;
+}
+
+MassRows mass_rows(const MassBlock& block) {
+    MassRows rows;
+    const CellsAtFree at = cells_at_free(block);
+    std::vector<std::size_t> behind(block.free.size(), 0);  // the column's place, if that is in this row
+    std::size_t c = 0;
+    for (std::size_t row = 0; row < block.free.size(); ++row) {
+        const std::size_t first = rows.column.size();
+        for (; c < at.end[row]; ++c) {
+            const MassCell& cell = block.cells[static_cast<std::size_t>(at.cells[c])];
+            for (std::int32_t u : cell.unknown) {
+                if (u < 0 || static_cast<std::size_t>(u) == row) continue;
+                std::size_t& p = behind[static_cast<std::size_t>(u)];
+                if (p <= first) {
+                    rows.column.push_back(u);
+                    rows.value.push_back(0);
+                    p = rows.column.size();
+                }
+                rows.value[p - 1] += cell.volume / 20;
+            }
+        }
+        rows.end.push_back(static_cast<std::uint32_t>(rows.column.size()));
     }
-    y[none] = 0;
+    return rows;
+}
+
+/// y = M x
+void multiply(const MassBlock& block, const std::vector<double>& x, std::vector<double>& y) {
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        double sum = 0.4 * block.mass[i] * x[i];
+        for (; k < block.rows.end[i]; ++k)
+            sum += block.rows.value[k] * x[static_cast<std::size_t>(block.rows.column[k])];
+        y[i] = sum;
+    }
 }
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
@@ -78,40 +121,23 @@ MassBlock mass_block(const Mesh& before, const Mesh& after, const ChangedCells& 
     for (const MassCell& cell : block.cells)
         if (cell.come < 0) block.gone.push_back({after.tets[cell.tet], cell.volume});
     number_unknowns(after, held_vertices(after, clusters, cluster), block);
+    block.rows = mass_rows(block);
     block.shape.assign(block.free.size(), 1);
     solve_mass(block, block.mass, block.shape);
     block.shape_mass = product(block.mass, block.shape);
     return block;
 }
 
-CellsAtFree cells_at_free(const MassBlock& block) {
-    CellsAtFree at;
-    at.end.assign(block.free.size(), 0);
-    const auto for_each = [&](const auto& visit) {
-        for (std::size_t c = 0; c < block.cells.size(); ++c)
-            for (std::int32_t u : block.cells[c].unknown)
-                if (u >= 0) visit(static_cast<std::size_t>(u), static_cast<std::int32_t>(c));
-    };
-    for_each([&](std::size_t u, std::int32_t) { ++at.end[u]; });
-    std::exclusive_scan(at.end.begin(), at.end.end(), at.end.begin(), 0u);
-    at.cells.resize(4 * block.cells.size());
-    for_each([&](std::size_t u, std::int32_t c) { at.cells[at.end[u]++] = c; });
-    return at;
-}
-
 void solve_mass(const MassBlock& block, std::span<const double> right, std::vector<double>& x) {
     const std::size_t n = block.free.size();
-    std::vector<double> residual(n + 1), scaled(n + 1, 0), direction(n + 1, 0), image(n + 1);
-    x.resize(n + 1);
-    x[n] = 0;
+    std::vector<double> residual(n), scaled(n), direction(n, 0), image(n);
     multiply(block, x, image);
     for (std::size_t i = 0; i < n; ++i) residual[i] = right[i] - image[i];
     const double norm = std::sqrt(std::inner_product(right.begin(), right.end(), right.begin(), 0.0));
     double old = 0;
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
         if (std::sqrt(product(residual, residual)) <= rounding * norm) break;
-        for (std::size_t i = 0; i < n; ++i)
-            scaled[i] = residual[i] / block.mass[i];  // mass is the diagonal times 5/2
+        for (std::size_t i = 0; i < n; ++i) scaled[i] = residual[i] / block.mass[i];
         const double now = product(residual, scaled), turn = iteration == 0 ? 0 : now / old;
         for (std::size_t i = 0; i < n; ++i) direction[i] = scaled[i] + turn * direction[i];
         multiply(block, direction, image);
@@ -124,7 +150,6 @@ void solve_mass(const MassBlock& block, std::span<const double> right, std::vect
         }
         old = now;
     }
-    x.resize(n);
 }
 
 }  // namespace kropla

@@ -22,15 +22,26 @@ struct OldMass {
     double volume;  // [m^3]
 };
 
-/// The unknowns of one cluster: its vertices whose ball is all in it, and that nothing holds. What is needed
-/// of the mass matrix: it acts cell by cell. `shape` is the solution w of M w = m, m_i the integral of the
-/// shape function: the direction in which a given integral is reached with the least change in the mean
-/// square.
+/// The mass matrix beside its diagonal, by rows.
+struct MassRows {
+    std::vector<std::uint32_t> end;    // per unknown
+    std::vector<std::int32_t> column;  // the unknowns next to it
+    std::vector<double> value;         // [m^3]
+    [[nodiscard]] std::span<const std::int32_t> columns(std::size_t row) const {
+        const std::size_t first = row == 0 ? 0 : end[row - 1];
+        return {column.data() + first, end[row] - first};
+    }
+};
+
+/// The unknowns of one cluster: its vertices whose ball is all in it, and that nothing holds. `shape` is the
+/// solution w of M w = m, m_i the integral of the shape function: the direction in which a given integral is
+/// reached with the least change in the mean square.
 struct MassBlock {
     std::vector<MassCell> cells;
     std::vector<OldMass> gone;
     std::vector<Vertex> free;
-    std::vector<double> mass;   // m_i [m^3]
+    std::vector<double> mass;   // m_i [m^3]: M's diagonal times 5/2
+    MassRows rows;
     std::vector<double> shape;  // w_i [-]
     double shape_mass = 0;      // sum of m_i w_i [m^3]
 };
@@ -40,17 +51,6 @@ struct MassBlock {
 
 [[nodiscard]] MassBlock mass_block(const Mesh& before, const Mesh& after, const ChangedCells& changed,
                                    const SlotMap& come, const Clusters& clusters, std::size_t cluster);
-
-/// The cells of the block at each of its free vertices.
-struct CellsAtFree {
-    std::vector<std::uint32_t> end;   // per free vertex
-    std::vector<std::int32_t> cells;  // places in MassBlock::cells
-    [[nodiscard]] std::span<const std::int32_t> of(std::size_t free) const {
-        const std::size_t first = free == 0 ? 0 : end[free - 1];
-        return {cells.data() + first, end[free] - first};
-    }
-};
-[[nodiscard]] CellsAtFree cells_at_free(const MassBlock& block);
 
 /// Solves M x = right to near rounding, starting from `x`.
 void solve_mass(const MassBlock& block, std::span<const double> right, std::vector<double>& x);
