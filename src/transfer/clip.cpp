@@ -1,10 +1,9 @@
 // Clipping of a tet by planes, and the integrals over what is left.
-//   [Stephenson, Christiansen 1975] A polyhedron clipping and capping algorithm and a display system for three
-//   dimensional finite element models. Comput. Graph. 9: what a plane leaves of a tet is a tet or a prism.
-// Changed: the part is kept as tets and each of them is cut, a prism falling into three by its staircase. Where a
-// plane goes through corners, as it does where old and new cells have them in common, there are fewer: none has
-// no volume. It works in the barycentric coordinates of the tet, so that shares and moments need no scale, and all
-// integrals are sums of positive terms.
+//   [Eberly 2007] Wild Magic 4, IntrTetrahedron3Tetrahedron3 (geometrictools.com): the part is kept as tets, and
+//     what a plane leaves of each is one tet or a prism, which falls into three.
+// Changed: where a plane goes through corners, as it does where old and new cells have them in common, the pieces
+// without volume are left out. It works in the barycentric coordinates of the tet, so that shares and moments need
+// no scale, and all integrals are sums of positive terms.
 
 #include "transfer/clip.h"
 
@@ -19,7 +18,7 @@ using Place = std::array<double, 3>;
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct Corner {
-    Place place;
+    const Place* place;
     double value;
 };
 
@@ -28,7 +27,7 @@ Place crossing(const Corner& inside, const Corner& outside) {
     const double per_whole = 1 / (inside.value - outside.value);
     Place x;
     for (std::size_t k = 0; k < 3; ++k)
-        x[k] = (outside.place[k] * inside.value - inside.place[k] * outside.value) * per_whole;
+        x[k] = ((*outside.place)[k] * inside.value - (*inside.place)[k] * outside.value) * per_whole;
     return x;
 }
 
@@ -40,20 +39,20 @@ void add_inside(TetPart& part, const std::array<Corner, 4>& corner, std::size_t 
     const auto& [a, b, c, d] = corner;
     const Place ad = crossing(a, d);
     if (inside == 1) {
-        add(a.place, crossing(a, b), crossing(a, c), ad);
+        add(*a.place, crossing(a, b), crossing(a, c), ad);
     } else if (inside == 2) {
         const Place bc = crossing(b, c), bd = crossing(b, d);
-        if (b.value > 0) add(a.place, b.place, bc, bd);
+        if (b.value > 0) add(*a.place, *b.place, bc, bd);
         if (a.value > 0) {
             const Place ac = crossing(a, c);
-            if (b.value > 0) add(a.place, ac, bc, bd);
-            add(a.place, ac, ad, bd);
+            if (b.value > 0) add(*a.place, ac, bc, bd);
+            add(*a.place, ac, ad, bd);
         }
     } else {
         const Place bd = crossing(b, d), cd = crossing(c, d);
-        if (c.value > 0) add(a.place, b.place, c.place, cd);
-        if (b.value > 0) add(a.place, b.place, bd, cd);
-        if (a.value > 0) add(a.place, ad, bd, cd);
+        if (c.value > 0) add(*a.place, *b.place, *c.place, cd);
+        if (b.value > 0) add(*a.place, *b.place, bd, cd);
+        if (a.value > 0) add(*a.place, ad, bd, cd);
     }
 }
 
@@ -79,12 +78,13 @@ bool cut(TetPart& part, const std::array<double, 4>& at_corners) {
                      most = std::max(std::max(value[0], value[1]), std::max(value[2], value[3]));
         if (least >= 0) continue;
         any = true;
+        const auto whole = part.tets[at(t)];
+        part.tets[at(t)] = part.tets[at(--part.count)];
+        if (most <= 0) continue;
         std::array<Corner, 4> corner;
         std::size_t inside = 0, end = 4;
-        if (most > 0)
-            for (std::size_t k = 0; k < 4; ++k) corner[value[k] < 0 ? --end : inside++] = {tet[k], value[k]};
-        part.tets[at(t)] = part.tets[at(--part.count)];
-        if (most > 0) add_inside(part, corner, inside);
+        for (std::size_t k = 0; k < 4; ++k) corner[value[k] < 0 ? --end : inside++] = {&whole[k], value[k]};
+        add_inside(part, corner, inside);
     }
     return any;
 }

@@ -143,13 +143,10 @@ Meeting meet(const Distances& d) {
     Meeting meeting;
     std::array<int, 4> left;  // of the whole tet by each plane; 0: it does not cross
     for (std::size_t i = 0; i < 4; ++i) {
-        int outside = 0, within = 0;
-        for (double x : d[i]) {
-            outside += x < 0;
-            within += x > 0;
-        }
+        const auto outside = std::ranges::count_if(d[i], [](double x) { return x < 0; }),
+                   within = std::ranges::count_if(d[i], [](double x) { return x > 0; });
         if (within == 0) return meeting;
-        left[i] = pieces(outside, within);
+        left[i] = pieces(static_cast<int>(outside), static_cast<int>(within));
     }
     meeting.met = true;
     if (left == std::array{0, 0, 0, 0}) {
