@@ -42,7 +42,7 @@ struct OldCell {
 /// A new cell to be covered.
 struct NewCell {
     std::array<Vertex, 4> vertices;  // those that the old mesh has in the same place
-    std::array<Vec3, 4> corners;
+    std::array<double, 4> x, y, z;   // of its corners
     Vec3 centre;
     double volume;
     Region region;
@@ -101,13 +101,17 @@ private:
 NewCell new_cell(const Mesh& before, const Mesh& after, Tet t) {
     NewCell cell;
     cell.region = after.region[t];
+    std::array<Vec3, 4> corners;
     for (std::size_t k = 0; k < 4; ++k) {
         const Vertex v = after.tets[t][k];
-        cell.corners[k] = after.position[v];
+        corners[k] = after.position[v];
+        cell.x[k] = corners[k].x;
+        cell.y[k] = corners[k].y;
+        cell.z[k] = corners[k].z;
         cell.vertices[k] = same_vertex(before, after, v) ? v : Vertex{};
-        cell.centre += 0.25 * cell.corners[k];
+        cell.centre += 0.25 * corners[k];
     }
-    cell.volume = tet_volume(cell.corners[0], cell.corners[1], cell.corners[2], cell.corners[3]);
+    cell.volume = tet_volume(corners[0], corners[1], corners[2], corners[3]);
     return cell;
 }
 
@@ -116,13 +120,17 @@ using Distances = std::array<std::array<double, 4>, 4>;
 
 Distances distances(const OldCell& old, const NewCell& cell) {
     Distances d;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3 n = old.inward[i], p = old.on[i];
+        for (std::size_t k = 0; k < 4; ++k)
+            d[i][k] = n.x * (cell.x[k] - p.x) + n.y * (cell.y[k] - p.y) + n.z * (cell.z[k] - p.z);
+    }
     for (std::size_t k = 0; k < 4; ++k) {
-        int own = -1;  // the old cell's corner where the new cell's stands
-        if (cell.vertices[k].exists())
-            for (int i = 0; i < 4; ++i)
-                if (old.vertices[at(i)] == cell.vertices[k]) own = i;
-        for (int i = 0; i < 4; ++i)
-            d[at(i)][k] = own >= 0 && own != i ? 0 : dot(old.inward[at(i)], cell.corners[k] - old.on[at(i)]);
+        if (!cell.vertices[k].exists()) continue;
+        for (std::size_t own = 0; own < 4; ++own)  // the old cell's corner where the new cell's stands
+            if (old.vertices[own] == cell.vertices[k])
+                for (std::size_t i = 0; i < 4; ++i)
+                    if (i != own) d[i][k] = 0;
     }
     return d;
 }
