@@ -78,7 +78,7 @@ bool same_tet(const Mesh& before, const Mesh& after, Tet t) {
 
 ChangedCells changed_cells(const Mesh& before, const Mesh& after, std::span<const Tet> cells,
                            std::span<const Vertex> vertices) {
-    Flood flood(before, after, 2 * cells.size());
+    Flood flood(before, after, 4 * cells.size());
     for (Tet t : cells) flood.look_at(t);
     for (Vertex v : vertices) {
         if (same_vertex(before, after, v)) continue;

@@ -25,8 +25,7 @@ std::vector<Vertex> rim_vertices(const Mesh& after, const Clusters& clusters, st
 
 }  // namespace
 
-Clusters::Clusters(const Mesh& after, const ChangedCells& changed, const Overlaps& overlaps)
-    : owner_(changed.come.size()) {
+Clusters::Clusters(const Mesh& after, const ChangedCells& changed) : owner_(2 * changed.come.size()) {
     constexpr std::int32_t not_yet = 1 << 30;
     for (Tet t : changed.come) owner_.insert(t.value, not_yet);
     for (Tet seed : changed.come) {
@@ -46,13 +45,16 @@ Clusters::Clusters(const Mesh& after, const ChangedCells& changed, const Overlap
     }
     gone_.resize(cells_.size());
     has_free_.assign(cells_.size(), false);
+}
+
+void Clusters::share_out(const ChangedCells& changed, const Overlaps& overlaps) {
     std::vector<std::pair<double, std::int32_t>> most(changed.gone.size(), {0, -1});  // share, cluster
     for (std::size_t i = 0; i < changed.come.size(); ++i)
         for (const CellShare& share : overlaps.cell(i)) {
             auto& [largest, cluster] = most[static_cast<std::size_t>(share.gone)];
             if (share.share <= largest) continue;
             largest = share.share;
-            cluster = owner_.find(changed.come[i].value);
+            cluster = cluster_of(changed.come[i]);
         }
     for (std::size_t i = 0; i < most.size(); ++i)
         if (most[i].second >= 0)

@@ -13,7 +13,9 @@ namespace kropla {
 class Clusters {
 public:
     Clusters() = default;
-    Clusters(const Mesh& after, const ChangedCells& changed, const Overlaps& overlaps);
+    Clusters(const Mesh& after, const ChangedCells& changed);
+    /// Gives each old cell to the cluster that has the largest part of it.
+    void share_out(const ChangedCells& changed, const Overlaps& overlaps);
 
     /// Numbers of clusters go from 0 to count() - 1; one that was taken in by another has no cells any more.
     [[nodiscard]] std::size_t count() const { return cells_.size(); }
@@ -21,7 +23,8 @@ public:
         return t.exists() ? owner(owner_.find(t.value)) : -1;
     }
     [[nodiscard]] std::span<const Tet> cells(std::size_t cluster) const { return cells_[cluster]; }
-    /// The old cells that fill the place of its changed ones, by their places in ChangedCells::gone.
+    /// The old cells that fill the place of its changed ones, by their places in ChangedCells::gone; none before
+    /// they are shared out.
     [[nodiscard]] std::span<const std::int32_t> gone(std::size_t cluster) const { return gone_[cluster]; }
     /// The cluster that has taken this one in; itself, if none has.
     [[nodiscard]] std::size_t now(std::size_t cluster) const {

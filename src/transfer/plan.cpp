@@ -3,6 +3,7 @@
 #include "mesh/topology.h"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 
@@ -54,9 +55,12 @@ TransferPlan plan_of(const Mesh& before, const Mesh& after, ChangedCells changed
     plan.before = &before;
     plan.after = &after;
     plan.changed = std::move(changed);
-    plan.overlaps = overlaps(before, after, plan.changed);
-    plan.clusters = Clusters(after, plan.changed, plan.overlaps);
-    grow_where_nothing_is_free(plan);
+    tbb::parallel_invoke([&] { plan.overlaps = overlaps(before, after, plan.changed); },
+                         [&] {
+                             plan.clusters = Clusters(after, plan.changed);
+                             grow_where_nothing_is_free(plan);
+                         });
+    plan.clusters.share_out(plan.changed, plan.overlaps);
     const SlotMap come = places_of(plan.changed.come);
     plan.blocks.resize(plan.clusters.count());
     tbb::parallel_for(std::size_t{0}, plan.blocks.size(), [&](std::size_t c) {
