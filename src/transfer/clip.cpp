@@ -1,9 +1,9 @@
 // Clipping of a tet by planes, and the integrals over what is left.
-//   [Eberly 2007] Wild Magic 4, IntrTetrahedron3Tetrahedron3 (geometrictools.com): the part is kept as tets, and
-//     what a plane leaves of each is one tet or a prism, which falls into three.
-// Changed: where a plane goes through corners, as it does where old and new cells have them in common, the pieces
-// without volume are left out. It works in the barycentric coordinates of the tet, so that shares and moments need
-// no scale, and all integrals are sums of positive terms.
+//   [Eberly 2007] Wild Magic 4, IntrTetrahedron3Tetrahedron3 (geometrictools.com): the part is kept as tets,
+//     and what a plane leaves of each is one tet or a prism, which falls into three.
+// Changed: where a plane goes through corners, as it does where old and new cells have them in common, the
+// pieces without volume are left out. It works in the barycentric coordinates of the tet, so that shares and
+// moments need no scale, and all integrals are sums of positive terms.
 
 #include "transfer/clip.h"
 
@@ -31,7 +31,8 @@ Place crossing(const Corner& inside, const Corner& outside) {
     return x;
 }
 
-/// Adds the pieces of a tet within the plane. `corner`: those inside first.
+/// Adds the pieces of a tet within the plane, a prism by its staircase; those that are flat, as a corner is in
+/// the plane, are left out. `corner`: those inside first.
 void add_inside(TetPart& part, const std::array<Corner, 4>& corner, std::size_t inside) {
     const auto add = [&](const Place& a, const Place& b, const Place& c, const Place& d) {
         part.tets[at(part.count++)] = {a, b, c, d};
@@ -78,7 +79,7 @@ bool cut(TetPart& part, const std::array<double, 4>& at_corners) {
                      most = std::max(std::max(value[0], value[1]), std::max(value[2], value[3]));
         if (least >= 0) continue;
         any = true;
-        const auto whole = part.tets[at(t)];
+        const auto whole = tet;
         part.tets[at(t)] = part.tets[at(--part.count)];
         if (most <= 0) continue;
         std::array<Corner, 4> corner;
@@ -102,14 +103,16 @@ TetMoments moments(const TetPart& part) {
             w[k] = d[k] - a[k];
             sum[k] = (a[k] + b[k]) + (c[k] + d[k]);
         }
-        const double share = std::abs(u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-                                      u[2] * (v[0] * w[1] - v[1] * w[0]));
+        const double share =
+            std::abs(u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+                     u[2] * (v[0] * w[1] - v[1] * w[0]));
         volume += share;
         for (std::size_t k = 0; k < 3; ++k) first[k] += share * sum[k];
         std::size_t n = 0;
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = i; j < 3; ++j)
-                second[n++] += share * (sum[i] * sum[j] + ((a[i] * a[j] + b[i] * b[j]) + (c[i] * c[j] + d[i] * d[j])));
+                second[n++] += share * (sum[i] * sum[j] +
+                                        ((a[i] * a[j] + b[i] * b[j]) + (c[i] * c[j] + d[i] * d[j])));
     }
     for (double& x : first) x /= 4;
     for (double& x : second) x /= 20;

@@ -23,8 +23,8 @@ public:
         return t.exists() ? owner(owner_.find(t.value)) : -1;
     }
     [[nodiscard]] std::span<const Tet> cells(std::size_t cluster) const { return cells_[cluster]; }
-    /// The old cells that fill the place of its changed ones, by their places in ChangedCells::gone; none before
-    /// they are shared out.
+    /// The old cells that fill the place of its changed ones, by their places in ChangedCells::gone; none
+    /// before they are shared out.
     [[nodiscard]] std::span<const std::int32_t> gone(std::size_t cluster) const { return gone_[cluster]; }
     /// The cluster that has taken this one in; itself, if none has.
     [[nodiscard]] std::size_t now(std::size_t cluster) const {
