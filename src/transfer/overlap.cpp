@@ -142,9 +142,9 @@ struct Meeting {
     TetMoments common{};
 };
 
-/// How many tets a plane leaves of one, given how many corners are outside and inside it.
-constexpr int pieces(int outside, int inside) {
-    return outside == 0 ? 0 : inside == 1 ? 1 : outside + inside - 1;
+/// How many tets a plane leaves of one, given how many of its corners are outside and within.
+constexpr int pieces(int outside, int within) {
+    return outside == 0 ? 0 : within == 1 ? 1 : outside + within - 1;
 }
 
 Meeting meet(const Distances& d) {
