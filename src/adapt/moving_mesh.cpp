@@ -17,7 +17,7 @@ constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is
 constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
 constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
-constexpr double harder = 0.8;           // there, cells must be better by this than elsewhere
+constexpr double harder = 0.92;          // there, cells must be better by this than elsewhere
 
 /// The vertices of a body's tets and of its layers' columns, in order.
 std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
