@@ -19,7 +19,7 @@
 namespace kropla {
 namespace {
 
-constexpr int most_rings = 4;          // by which a cluster grows for the sake of its bounds
+constexpr int most_rings = 12;         // by which a cluster grows for the sake of its bounds
 constexpr double range_slack = 1e-13;  // [-] of the range of the values: beyond the bounds by rounding
 constexpr double value_slack = 1e-15;  // [-] of the values themselves
 
