@@ -96,8 +96,8 @@ struct AdaptOptions {
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
     double passing = 50.0;            // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
-    double split_above = 1.52;        // [target sizes] longer edges are split
-    double collapse_below = 0.65;     // [target sizes] shorter edges are collapsed
+    double split_above = 1.58;        // [target sizes] longer edges are split
+    double collapse_below = 0.63;     // [target sizes] shorter edges are collapsed
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung
     std::uint64_t seed = 1;           // of the new points of a cluster
@@ -118,8 +118,8 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, cons
 /// one of those it replaces was. To be followed by `improve`.
 Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
-/// Moves vertices only (connectivity is unchanged): equalises volumes, takes vertices back that spoil cells,
-/// then optimises what is left above `good_enough`.
+/// Moves vertices only (connectivity is unchanged): equalises volumes; then, of cells that have come near the
+/// floor (and are above `good_enough`), takes vertices back, and optimises what is left.
 Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options = {});
 
 /// Cuts a cluster of tets of one region out, keeps its boundary facets, drops its free vertices, fills it

@@ -1,7 +1,9 @@
 // Optimisation of the places of the vertices of a zone (the paper's modification steps, Fig. 5: equalise
 // volumes, then smooth for quality), for little: all vertices go at once to the barycentres of their balls,
-// weighted by volume in target volumes; then the cells are measured, each once; where one has become bad, its
-// vertices go back; and what is bad still is optimised vertex by vertex. Weighting as in the centroidal patch
+// weighted by volume in target volumes; then the cells are measured, each once; where one has come near the
+// floor, its vertices go back; and what is there still is optimised vertex by vertex. Cells that are bad but
+// far from the floor are left to the operators that change connectivity: moving vertices for the worst of
+// them crowds vertices elsewhere, which costs more cells than it saves. Weighting as in the centroidal patch
 // tessellation of [Chen, Holst 2011], "Efficient mesh optimization schemes based on Optimal Delaunay
 // Triangulations".
 
@@ -19,8 +21,9 @@ namespace kropla {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr double relaxation = 0.7;  // share of the way to the barycentre
-constexpr int most_retreats = 5;    // vertices that are taken back may spoil the cells of others
+constexpr int most_retreats = 5;       // vertices that are taken back may spoil the cells of others
+constexpr int most_passes = 4;         // over the vertices of bad cells
+constexpr double near_the_floor = 0.8;  // of it: cells above are put right by moving vertices
 
 struct Pull {
     Vec3 moment;
@@ -46,7 +49,7 @@ void equalise_volumes(Zone& zone) {
             sum.weight += pull.weight;
         }
         const Vec3 way = sum.moment / sum.weight - zone.place[v];
-        zone.place[v] += relaxation * restricted(way, freedom(zone, static_cast<int>(v)));
+        zone.place[v] += restricted(way, freedom(zone, static_cast<int>(v)));
     });
 }
 
@@ -104,18 +107,19 @@ std::vector<int> take_apart(const Zone& zone, std::vector<int>& vertices) {
     return apart;
 }
 
-/// Moves the vertices of bad cells, each once, to their best places: at once those that share no cell.
-int optimise_worst(Zone& zone, const AdaptOptions& options) {
-    const auto is_bad = [&](int c) { return zone.ratio[at(c)] > options.good_enough; };
+/// Moves the vertices of cells worse than `above`, each once, to their best places: at once those that share no
+/// cell.
+int optimise_worst(Zone& zone, double above) {
+    const auto is_bad = [&](int c) { return zone.ratio[at(c)] > above; };
     std::atomic<int> moved = 0;
-    auto vertices = vertices_of_worse(zone, options.good_enough);
+    auto vertices = vertices_of_worse(zone, above);
     while (!vertices.empty()) {
         const auto apart = take_apart(zone, vertices);
         for_all(apart.size(), [&](std::size_t i) {
             std::vector<StarFacet> star;
             star_of_ball(zone, apart[i], star);
             Vec3& place = zone.place[at(apart[i])];
-            const Place best = best_place(star, place, freedom(zone, apart[i]), 0.9 * options.good_enough);
+            const Place best = best_place(star, place, freedom(zone, apart[i]), 0.9 * above);
             if (best.x == place) return;
             place = best.x;
             measure_ball(zone, apart[i]);
@@ -143,9 +147,15 @@ int optimise_places(Zone& zone, const AdaptOptions& options) {
     const std::vector<Vec3> moved = zone.place;
     for (int i = 0; i < options.relaxations; ++i) equalise_volumes(zone);
     measure(zone);
-    for (int i = 0; i < most_retreats && retreat(zone, moved, options.good_enough); ++i) {}
-
-    return optimise_worst(zone, options);
+    const double spoilt = std::max(options.good_enough, near_the_floor * options.floor);
+    for (int i = 0; i < most_retreats && retreat(zone, moved, spoilt); ++i) {}
+    int count = 0;
+    for (int i = 0; i < most_passes; ++i) {
+        const int more = optimise_worst(zone, spoilt);
+        count += more;
+        if (more == 0) break;
+    }
+    return count;
 }
 
 Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {
