@@ -59,9 +59,10 @@ bool optimise_vertex(Mesh& mesh, Vertex v, double good_enough);
 
 // --- Proposals: swapping, splitting, collapsing, inserting ------------------------------------------------------
 
-/// What a swap is to lower: the worst aspect ratio of the cells it replaces; or their energy, the sum of
-/// volume times (R/r)^4 [m^3], which does not depend on the number of cells and is ruled by the bad ones,
-/// with no cell worse than `limit` after. `worst_before` and `worst_after` of the proposal are then energies.
+/// What a swap is to lower: the worst aspect ratio of the cells it replaces, or, if a limit is given, anything above
+/// that; or their energy, the sum of volume times (R/r)^4 [m^3], which does not depend on the number of cells and is
+/// ruled by the bad ones, with no cell worse than `limit` after. `worst_before` and `worst_after` of the proposal are
+/// then energies.
 struct SwapGoal {
     bool by_energy = false;
     double limit = std::numeric_limits<double>::infinity();  // [-] R/r

@@ -1,8 +1,9 @@
 // Improvement of the worst cells first: for each, the operators in the order of what they cost the solution
 // (a swap keeps all vertices, smoothing moves one, a collapse loses one, a split adds one), after the
-// schedule of [Klingner, Shewchuk 2007], "Aggressive tetrahedral mesh improvement", here cell by cell from a
-// queue, so that work is proportional to the bad cells. It ends, as each step lowers the worst aspect ratio
-// of what it replaces.
+// schedule of [Klingner, Shewchuk 2007], "Aggressive tetrahedral mesh improvement", here cell by cell, so that
+// work is proportional to the bad cells. What helps is asked for all bad cells at once, by several threads, and
+// carried out the worst first; what has been overtaken by others is asked anew. It ends, as each step lowers
+// the worst aspect ratio of what it replaces.
 
 #include "adapt/propose.h"
 #include "adapt/star.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <queue>
 
 namespace kropla {
 namespace {
@@ -24,65 +24,62 @@ constexpr int most_rounds = 3;                  // a cell found stuck is tried a
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// The work list: bad cells, the worst first, ties by number.
-class BadCells {
-public:
-    BadCells(const Mesh& mesh, double above) : mesh_(mesh), above_(above) {}
+enum class Kind { swap, move, collapse, split };
 
-    void add(Tet t) {
-        if (!alive(mesh_, t)) return;
-        if (const double ratio = aspect_ratio(mesh_, t); ratio > above_) queue_.push({ratio, -t.value});
-    }
-    /// The worst cell, if one is left; entries whose cell has changed since are passed over.
-    std::optional<std::pair<Tet, double>> take() {
-        while (!queue_.empty()) {
-            const auto [ratio, minus_name] = queue_.top();
-            queue_.pop();
-            const Tet t(-minus_name);
-            if (alive(mesh_, t) && aspect_ratio(mesh_, t) == ratio) return std::pair(t, ratio);
-        }
-        return std::nullopt;
-    }
-
-private:
-    const Mesh& mesh_;
-    double above_;
-    std::priority_queue<std::pair<double, std::int32_t>> queue_;
+/// What helps a bad cell: other cells in the place of some; or another place for a vertex, whose ball then stands
+/// as what is removed, with nothing added.
+struct Remedy {
+    Kind kind;
+    Cavity cavity;
+    Vertex moved = {};
+    Vec3 place = {};
 };
 
-/// One improvement of a mesh under way.
-struct Improvement {
-    Mesh& mesh;
-    const Snapshot& at_time;
-    const AdaptOptions& options;
-    BadCells bad;
-    IndexSet<Tet> changed = {};  // cells that are new or have moved
-    Shell around = {};           // room for questions
-    Changes changes = {};
-
-    void carry_out(const Cavity& cavity) {
-        const std::size_t known = changes.cells.size();
-        kropla::carry_out(mesh, cavity, changes);
-        for (std::size_t i = known; i < changes.cells.size(); ++i) {
-            bad.add(changes.cells[i]);
-            changed.insert(changes.cells[i]);
-        }
-    }
+struct BadCell {
+    double ratio;
+    Tet cell;
 };
 
-void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
-    if (!other) return;
-    const auto gain = [](const Cavity& c) { return c.worst_before - c.worst_after; };
-    if (!best || gain(*other) > gain(*best)) best = std::move(other);
+/// What replaces the cell must be better than this.
+double bound(const BadCell& bad) { return (1 - least_gain) * bad.ratio; }
+
+bool is_worse(const BadCell& a, const BadCell& b) { return a.ratio > b.ratio || (a.ratio == b.ratio && a.cell < b.cell); }
+
+/// Adds those of the cells that are bad to the list, which stays in order: the worst first, ties by number. None of
+/// them is there yet.
+void add_bad(const Mesh& mesh, std::vector<Tet> cells, double above, std::vector<BadCell>& bad) {
+    std::ranges::sort(cells);
+    const auto repeated = std::ranges::unique(cells);
+    cells.erase(repeated.begin(), repeated.end());
+    const auto known = static_cast<std::ptrdiff_t>(bad.size());
+    for (Tet t : cells)
+        if (alive(mesh, t))
+            if (const double ratio = aspect_ratio(mesh, t); ratio > above) bad.push_back({ratio, t});
+    std::sort(bad.begin() + known, bad.end(), is_worse);
+    std::inplace_merge(bad.begin(), bad.begin() + known, bad.end(), is_worse);
 }
 
-/// The longest edge of the cell, as in tet_edges.
-std::size_t longest_edge(const Mesh& mesh, Tet t) {
+std::array<double, 6> squared_edges(const Mesh& mesh, Tet t) {
     std::array<double, 6> lengths;
     for (std::size_t k = 0; k < 6; ++k) {
         const auto [i, j] = tet_edges[k];
         lengths[k] = squared_norm(mesh.position[mesh.tets[t][at(i)]] - mesh.position[mesh.tets[t][at(j)]]);
     }
+    return lengths;
+}
+
+/// The edges of the cell, as in tet_edges, the longest first.
+std::array<std::size_t, 6> edges_by_length(const Mesh& mesh, Tet t) {
+    const auto lengths = squared_edges(mesh, t);
+    std::array<std::size_t, 6> edges = {0, 1, 2, 3, 4, 5};
+    std::ranges::sort(edges, [&](std::size_t a, std::size_t b) {
+        return lengths[a] > lengths[b] || (lengths[a] == lengths[b] && a < b);
+    });
+    return edges;
+}
+
+std::size_t longest_edge(const Mesh& mesh, Tet t) {
+    const auto lengths = squared_edges(mesh, t);
     return static_cast<std::size_t>(std::ranges::max_element(lengths) - lengths.begin());
 }
 
@@ -126,28 +123,67 @@ std::optional<Cavity> swap_longest_edge(const Mesh& mesh, Tet t, double limit) {
     return edge_removal(mesh, around, e, {true, limit});
 }
 
-bool swap_at(Improvement& work, Tet t) {
-    const Mesh& mesh = work.mesh;
-    std::optional<Cavity> best;
-    for (int i = 0; i < 4; ++i) keep_better(best, face_removal(mesh, {t, i}));
-    for (const auto& [i, j] : tet_edges) {
-        const Edge e{mesh.tets[t][at(i)], mesh.tets[t][at(j)]};
-        shell(mesh, e, t, work.around);
-        keep_better(best, edge_removal(mesh, work.around, e));
+/// Asked for what helps; sees the mesh, and the cells that are new or have moved already.
+struct Doctor {
+    const Mesh& mesh;
+    const Snapshot& at_time;
+    const AdaptOptions& options;
+    const IndexSet<Tet>& changed;
+
+    [[nodiscard]] std::optional<Remedy> remedy(const BadCell& bad) const;
+    [[nodiscard]] std::optional<Cavity> swap_long_edge(const BadCell& bad) const;
+    [[nodiscard]] std::optional<Cavity> swap_any(const BadCell& bad) const;
+    [[nodiscard]] std::optional<Remedy> move(Tet t) const;
+    [[nodiscard]] std::optional<Cavity> collapse(const BadCell& bad) const;
+    [[nodiscard]] std::optional<Cavity> split(const BadCell& bad) const;
+    [[nodiscard]] bool makes_long_edge(const Cavity& cavity, Vertex to) const;
+};
+
+std::optional<Remedy> Doctor::remedy(const BadCell& bad) const {
+    if (auto cavity = swap_long_edge(bad)) return Remedy{Kind::swap, std::move(*cavity)};
+    if (auto other_place = move(bad.cell)) return other_place;
+    if (auto cavity = swap_any(bad)) return Remedy{Kind::swap, std::move(*cavity)};
+    if (auto cavity = collapse(bad)) return Remedy{Kind::collapse, std::move(*cavity)};
+    if (auto cavity = split(bad)) return Remedy{Kind::split, std::move(*cavity)};
+    return std::nullopt;
+}
+
+/// Takes the better of two proposals.
+void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
+    if (other && (!best || other->worst_after < best->worst_after)) best = std::move(other);
+}
+
+/// The best swap that takes one of these edges of the cell away, of which `best` may hold one already.
+void swap_edges(const Mesh& mesh, const BadCell& bad, std::span<const std::size_t> edges, std::optional<Cavity>& best) {
+    Shell around;
+    for (std::size_t edge : edges) {
+        const auto [i, j] = tet_edges[edge];
+        const Edge e{mesh.tets[bad.cell][at(i)], mesh.tets[bad.cell][at(j)]};
+        shell(mesh, e, bad.cell, around);
+        keep_better(best, edge_removal(mesh, around, e, {false, best ? best->worst_after : bound(bad)}));
     }
-    if (!best) return false;
-    work.carry_out(*best);
-    ++work.changes.swaps;
-    return true;
 }
 
-/// What a move costs the solution: each cell at the vertex that is still as it was has to be projected.
-std::ptrdiff_t count_unchanged(const Improvement& work, std::span<const Tet> around) {
-    return std::ranges::count_if(around, [&](Tet t) { return !work.changed.contains(t); });
+/// By one of the three longest edges: in the default case they make 96 % of the swaps, for a third of the work.
+std::optional<Cavity> Doctor::swap_long_edge(const BadCell& bad) const {
+    std::optional<Cavity> best;
+    const auto edges = edges_by_length(mesh, bad.cell);
+    swap_edges(mesh, bad, std::span(edges).first(3), best);
+    return best;
 }
 
-/// Moves the vertex that makes the cell good enough at the least cost; or, if none does, makes it the best.
-bool smooth_at(Improvement& work, Tet t) {
+std::optional<Cavity> Doctor::swap_any(const BadCell& bad) const {
+    std::optional<Cavity> best;
+    const auto edges = edges_by_length(mesh, bad.cell);
+    swap_edges(mesh, bad, std::span(edges).last(3), best);
+    for (int i = 0; i < 4; ++i)
+        keep_better(best, face_removal(mesh, {bad.cell, i}, {false, best ? best->worst_after : bound(bad)}));
+    return best;
+}
+
+/// Moves the vertex that makes the cell good enough at the least cost to the solution, as each cell at it that is
+/// still as it was has to be projected; or, if none does, makes it the best.
+std::optional<Remedy> Doctor::move(Tet t) const {
     struct Candidate {
         std::ptrdiff_t cost;
         Vertex vertex;
@@ -156,72 +192,120 @@ bool smooth_at(Improvement& work, Tet t) {
     std::array<Candidate, 4> by_cost;
     for (std::size_t i = 0; i < 4; ++i) {
         auto& [cost, v, around] = by_cost[i];
-        v = work.mesh.tets[t][i];
-        ball(work.mesh, v, around);
-        cost = count_unchanged(work, around);
+        v = mesh.tets[t][i];
+        ball(mesh, v, around);
+        cost = std::ranges::count_if(around, [&](Tet n) { return !changed.contains(n); });
     }
     std::ranges::sort(by_cost, {}, [](const Candidate& c) { return std::pair(c.cost, c.vertex); });
-    const Candidate* chosen = nullptr;
+    Candidate* chosen = nullptr;
     Place best{{}, std::numeric_limits<double>::infinity()};
-    for (const Candidate& candidate : by_cost) {
-        const Place place = better_place(work.mesh, candidate.vertex, candidate.around, 0.9 * work.options.good_enough);
-        if (place.x == work.mesh.position[candidate.vertex] || place.worst >= best.worst) continue;
+    for (Candidate& candidate : by_cost) {
+        const Place place = better_place(mesh, candidate.vertex, candidate.around, 0.9 * options.good_enough);
+        if (place.x == mesh.position[candidate.vertex] || place.worst >= best.worst) continue;
         chosen = &candidate;
         best = place;
-        if (best.worst <= work.options.good_enough) break;
+        if (best.worst <= options.good_enough) break;
     }
-    if (!chosen) return false;
-    work.mesh.position[chosen->vertex] = best.x;
-    ++work.changes.moved;
-    work.changes.vertices.push_back(chosen->vertex);
-    for (Tet moved : chosen->around) {
-        work.bad.add(moved);
-        work.changed.insert(moved);
-    }
-    return true;
+    if (!chosen) return std::nullopt;
+    Remedy remedy{Kind::move, {}, chosen->vertex, best.x};
+    remedy.cavity.removed = std::move(chosen->around);
+    return remedy;
 }
 
-bool makes_long_edge(const Improvement& work, const Cavity& cavity, Vertex to) {
-    const Vec3 place = work.mesh.position[to];
-    const double longest = longest_after_collapse * target_size(work.at_time, place);
+bool Doctor::makes_long_edge(const Cavity& cavity, Vertex to) const {
+    const Vec3 place = mesh.position[to];
+    const double longest = longest_after_collapse * target_size(at_time, place);
     return std::ranges::any_of(cavity.added, [&](const NewTet& t) {
-        return std::ranges::any_of(
-            t.vertices, [&](Vertex v) { return distance(work.mesh.position[v], place) > longest; });
+        return std::ranges::any_of(t.vertices, [&](Vertex v) { return distance(mesh.position[v], place) > longest; });
     });
 }
 
-bool collapse_at(Improvement& work, Tet t, double ratio) {
-    const double bound = (1 - least_gain) * ratio;
+std::optional<Cavity> Doctor::collapse(const BadCell& bad) const {
     std::optional<Cavity> best;
     std::vector<Tet> around;
-    for (Vertex from : work.mesh.tets[t]) {
-        ball(work.mesh, from, around);
-        for (Vertex to : work.mesh.tets[t]) {
+    for (Vertex from : mesh.tets[bad.cell]) {
+        ball(mesh, from, around);
+        for (Vertex to : mesh.tets[bad.cell]) {
             if (from == to) continue;
-            auto cavity = edge_collapse(work.mesh, from, to, around, best ? best->worst_after : bound);
-            if (cavity && !makes_long_edge(work, *cavity, to)) best = std::move(cavity);
+            auto cavity = edge_collapse(mesh, from, to, around, best ? best->worst_after : bound(bad));
+            if (cavity && !makes_long_edge(*cavity, to)) best = std::move(cavity);
         }
     }
-    if (!best) return false;
-    work.carry_out(*best);
-    ++work.changes.collapses;
-    return true;
+    return best;
 }
 
-bool split_at(Improvement& work, Tet t, double ratio) {
-    const Mesh& mesh = work.mesh;
-    const double bound = (1 - least_gain) * ratio;
+std::optional<Cavity> Doctor::split(const BadCell& bad) const {
     std::optional<Cavity> best;
+    Shell around;
     for (const auto& [i, j] : tet_edges) {
-        const Edge e{mesh.tets[t][at(i)], mesh.tets[t][at(j)]};
-        shell(mesh, e, t, work.around);
-        auto cavity = edge_split(mesh, work.around, e, best ? best->worst_after : bound);
+        const Edge e{mesh.tets[bad.cell][at(i)], mesh.tets[bad.cell][at(j)]};
+        shell(mesh, e, bad.cell, around);
+        auto cavity = edge_split(mesh, around, e, best ? best->worst_after : bound(bad));
         if (cavity && (!best || cavity->worst_after < best->worst_after)) best = std::move(cavity);
     }
-    if (!best) return false;
-    work.carry_out(*best);
-    ++work.changes.splits;
-    return true;
+    return best;
+}
+
+/// Carries the remedy out and notes it. Returns the cells that are new or have moved.
+std::vector<Tet> apply(Mesh& mesh, Remedy& remedy, Changes& changes) {
+    if (remedy.kind == Kind::move) {
+        mesh.position[remedy.moved] = remedy.place;
+        ++changes.moved;
+        changes.vertices.push_back(remedy.moved);
+        return std::move(remedy.cavity.removed);
+    }
+    ++(remedy.kind == Kind::swap ? changes.swaps : remedy.kind == Kind::collapse ? changes.collapses : changes.splits);
+    const auto known = static_cast<std::ptrdiff_t>(changes.cells.size());
+    carry_out(mesh, remedy.cavity, changes);
+    return {changes.cells.begin() + known, changes.cells.end()};
+}
+
+/// Takes out those of `bad` that share no vertex with a worse one: what helps one of them may help those beside.
+std::vector<BadCell> take_apart(const Mesh& mesh, std::vector<BadCell>& bad) {
+    std::vector<BadCell> apart, rest;
+    IndexSet<Vertex> taken;
+    for (const BadCell& b : bad) {
+        const auto& v = mesh.tets[b.cell];
+        const bool is_beside = std::ranges::any_of(v, [&](Vertex corner) { return taken.contains(corner); });
+        (is_beside ? rest : apart).push_back(b);
+        for (Vertex corner : v) taken.insert(corner);
+    }
+    bad = std::move(rest);
+    return apart;
+}
+
+/// Treats the bad cells until none is left that anything helps. Returns those that are left; `changed` and
+/// `changes` grow.
+std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_time, const AdaptOptions& options,
+                       IndexSet<Tet>& changed, Changes& changes) {
+    std::vector<Tet> stuck;
+    while (!bad.empty()) {
+        const auto asked = take_apart(mesh, bad);
+        const Doctor doctor{mesh, at_time, options, changed};
+        const Vertex next = next_vertex(mesh);
+        auto remedies = propose_all(asked.size(), [&](std::size_t i) { return doctor.remedy(asked[i]); });
+        std::vector<Tet> again;
+        Replaced replaced;
+        std::size_t i = 0;
+        for (auto& [which, remedy] : remedies) {
+            for (; i < which; ++i) stuck.push_back(asked[i].cell);
+            ++i;
+            if (replaced.outdates(remedy.cavity)) {
+                again.push_back(asked[which].cell);
+                continue;
+            }
+            replaced.add(remedy.cavity);
+            rename_inserted(remedy.cavity, next, mesh);
+            for (Tet t : apply(mesh, remedy, changes)) {
+                changed.insert(t);
+                again.push_back(t);
+            }
+        }
+        for (; i < asked.size(); ++i) stuck.push_back(asked[i].cell);
+        std::erase_if(bad, [&](const BadCell& b) { return replaced.contains(b.cell); });
+        add_bad(mesh, std::move(again), options.good_enough, bad);
+    }
+    return stuck;
 }
 
 }  // namespace
@@ -280,28 +364,24 @@ Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 }
 
 Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options,
-                std::span<const Tet> changed) {
-    Improvement work{mesh, at_time, options, BadCells(mesh, options.good_enough)};
-    work.changes = swap_for_energy(mesh, cells, options);
-    for (Tet t : changed) work.changed.insert(t);
-    for (Tet t : work.changes.cells) work.changed.insert(t);
-    for (Tet t : cells) work.bad.add(t);
-    const std::size_t swapped = work.changes.cells.size();
-    for (int round = 0; round < most_rounds; ++round) {
-        std::vector<Tet> stuck;
-        bool progress = false;
-        while (const auto worst = work.bad.take()) {
-            const auto [t, ratio] = *worst;
-            if (swap_at(work, t) || smooth_at(work, t) || collapse_at(work, t, ratio) || split_at(work, t, ratio))
-                progress = true;
-            else stuck.push_back(t);
-        }
-        if (!progress || stuck.empty()) break;
-        for (Tet t : stuck) work.bad.add(t);
+                std::span<const Tet> known_changed) {
+    Changes changes = swap_for_energy(mesh, cells, options);
+    IndexSet<Tet> changed;
+    for (Tet t : known_changed) changed.insert(t);
+    for (Tet t : changes.cells) changed.insert(t);
+    std::vector<Tet> left(cells.begin(), cells.end());
+    left.insert(left.end(), changes.cells.begin(), changes.cells.end());
+    const auto swapped = static_cast<std::ptrdiff_t>(changes.cells.size());
+    for (int round = 0; round < most_rounds && !left.empty(); ++round) {
+        const std::size_t before = changes.cells.size() + changes.vertices.size();
+        std::vector<BadCell> bad;
+        add_bad(mesh, std::move(left), options.good_enough, bad);
+        left = treat(mesh, std::move(bad), at_time, options, changed, changes);
+        if (changes.cells.size() + changes.vertices.size() == before) break;
     }
-    const std::vector<Tet> added(work.changes.cells.begin() + static_cast<std::ptrdiff_t>(swapped), work.changes.cells.end());
-    work.changes += swap_for_energy(mesh, added, options);
-    return std::move(work.changes);
+    const std::vector<Tet> added(changes.cells.begin() + swapped, changes.cells.end());
+    changes += swap_for_energy(mesh, added, options);
+    return changes;
 }
 
 }  // namespace kropla

@@ -226,7 +226,8 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
 /// of rows that are no longer than L and change by no more than D changes by at most (L + D)^3 - L^3 [by
 /// Hadamard's inequality for each of its terms].
 KROPLA_FOR_EACH_PROCESSOR
-void tell_safe(const FourTets& start, const FourTets& end, double least, std::array<bool, 4>& safe) {
+void tell_safe(const FourPlaces& from, const FourPlaces& to, double least, std::array<bool, 4>& safe) {
+    const FourTets start = gathered(from), end = gathered(to);
     const std::array<FourVec3, 3> e = {start.b - start.a, start.c - start.a, start.d - start.a};
     const FourVec3 da = end.a - start.a;
     const std::array<FourVec3, 3> de = {end.b - start.b - da, end.c - start.c - da, end.d - start.d - da};

@@ -1,30 +1,47 @@
 #pragma once
 
 #include "adapt/adapt.h"
+#include "adapt/for_all.h"
 #include "mesh/index_set.h"
 
 #include <algorithm>
-#include <functional>
+#include <iterator>
+#include <optional>
+#include <vector>
 
 namespace kropla {
 
+/// What is proposed, and for the how manieth it was asked.
+template <class What>
 struct Proposal {
-    std::size_t asked;  // for which it was made
-    Cavity cavity;
+    std::size_t asked;
+    What what;
 };
 
-/// What `propose` says for 0 ... count - 1, in this order, where it says something; asked by several threads at
-/// once on a mesh that nothing changes meanwhile: the same for any number of threads.
-[[nodiscard]] std::vector<Proposal> propose_all(std::size_t count,
-                                                const std::function<std::optional<Cavity>(std::size_t)>& propose);
+/// What `propose` says for 0 ... count - 1, in this order, where it says something (it returns an optional); asked
+/// by several threads at once on a mesh that nothing changes meanwhile: the same for any number of threads.
+template <class Propose>
+[[nodiscard]] auto propose_all(std::size_t count, Propose propose) {
+    using What = typename decltype(propose(count))::value_type;
+    constexpr std::size_t at_once = 64;
+    std::vector<std::vector<Proposal<What>>> parts((count + at_once - 1) / at_once);
+    for_all(parts.size(), [&](std::size_t part) {
+        for (std::size_t i = at_once * part; i < std::min(count, at_once * (part + 1)); ++i)
+            if (auto what = propose(i)) parts[part].push_back({i, std::move(*what)});
+    }, 1);
+    std::vector<Proposal<What>> all;
+    for (auto& part : parts) std::ranges::move(part, std::back_inserter(all));
+    return all;
+}
 
-/// Cells that have been replaced since proposals were made: a proposal that would replace one of them is out
-/// of date, all others are as good as they were.
+/// Cells that have been replaced or have moved since proposals were made: a proposal that would replace one of
+/// them is out of date, all others are as good as they were.
 class Replaced {
 public:
     void add(const Cavity& cavity) {
         for (Tet t : cavity.removed) cells_.insert(t);
     }
+    [[nodiscard]] bool contains(Tet t) const { return cells_.contains(t); }
     [[nodiscard]] bool outdates(const Cavity& cavity) const {
         return std::ranges::any_of(cavity.removed, [&](Tet t) { return cells_.contains(t); });
     }
@@ -32,5 +49,9 @@ public:
 private:
     IndexSet<Tet> cells_;
 };
+
+/// Makes a proposal that inserts one vertex, made when `then` was the next to be inserted, fit the mesh as it is
+/// now.
+void rename_inserted(Cavity& cavity, Vertex then, const Mesh& now);
 
 }  // namespace kropla

@@ -22,27 +22,42 @@ constexpr std::size_t most = longest_ring;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+using Corners = std::array<const Vec3*, 4>;
+
 /// What a set of cells is worth: the worst of them, or their sum.
 struct Measure {
     SwapGoal goal;
 
     [[nodiscard]] double together(double a, double b) const { return goal.by_energy ? a + b : std::max(a, b); }
-    [[nodiscard]] double of_tet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
-        const double ratio = tet_aspect_ratio(a, b, c, d);
-        if (ratio > goal.limit) return infinity;
-        return goal.by_energy ? tet_volume(a, b, c, d) * (ratio * ratio) * (ratio * ratio) : ratio;
+    /// Of up to four cells at once.
+    [[nodiscard]] Four of_each(std::span<const Corners> tets) const {
+        constexpr std::size_t one = 1;
+        const std::size_t last = tets.size() - 1;
+        const auto four = FourPlaces{tets[0], tets[std::min(last, one)], tets[std::min(last, 2 * one)], tets[last]};
+        Four ratios, energies;
+        if (goal.by_energy) tet_aspect_ratios(four, ratios, energies);
+        else tet_aspect_ratios(four, ratios);
+        Four& values = goal.by_energy ? energies : ratios;
+        for (std::size_t i = 0; i < 4; ++i)
+            if (ratios[i] > goal.limit) values.set(i, infinity);
+        return values;
+    }
+    [[nodiscard]] double of_all(std::span<const Corners> tets) const {
+        double all = 0;
+        for (std::size_t first = 0; first < tets.size(); first += 4) {
+            const auto some = tets.subspan(first, std::min<std::size_t>(4, tets.size() - first));
+            const Four each = of_each(some);
+            for (std::size_t i = 0; i < some.size(); ++i) all = together(all, each[i]);
+        }
+        return all;
     }
 };
 
 double of_tets(const Mesh& mesh, std::span<const Tet> tets, SwapGoal goal) {
-    const Measure measure{{goal.by_energy, infinity}};
-    double all = 0;
-    for (Tet t : tets) {
-        const auto& v = mesh.tets[t];
-        all = measure.together(all, measure.of_tet(mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]],
-                                                   mesh.position[v[3]]));
-    }
-    return all;
+    std::array<Corners, most> corners;
+    for (std::size_t i = 0; i < tets.size(); ++i)
+        for (std::size_t k = 0; k < 4; ++k) corners[i][k] = &mesh.position[mesh.tets[tets[i]][k]];
+    return Measure{{goal.by_energy, infinity}}.of_all({corners.data(), tets.size()});
 }
 
 /// The best triangulation of the ring's polygon i ... j, for all i < j: what it is worth, and the third
@@ -52,34 +67,58 @@ struct RingTable {
     std::size_t apex[most][most];
 };
 
+/// The corners k at which the polygon i ... j may be cut, with what the two sides are worth.
+struct Cuts {
+    std::array<std::size_t, most> corner;
+    std::array<double, most> sides;
+    std::size_t count = 0;
+};
+
+Cuts cuts_of(const RingTable& table, std::size_t i, std::size_t j, const Measure& measure, double bound) {
+    Cuts cuts;
+    for (std::size_t k = i + 1; k < j; ++k) {
+        const double sides = measure.together(table.value[i][k], table.value[k][j]);
+        if (sides >= bound) continue;
+        cuts.corner[cuts.count] = k;
+        cuts.sides[cuts.count++] = sides;
+    }
+    return cuts;
+}
+
 RingTable triangulate_ring(const Mesh& mesh, Edge edge, std::span<const Vertex> ring, const Measure& measure,
                            double bound) {
-    const Vec3 a = mesh.position[edge.a], b = mesh.position[edge.b];
-    const auto with_triangle = [&](double sides, std::size_t i, std::size_t k, std::size_t j, double limit) {
-        const Vec3 p = mesh.position[ring[i]], q = mesh.position[ring[k]], r = mesh.position[ring[j]];
-        const double above = measure.together(sides, measure.of_tet(p, q, r, b));
-        return above >= limit ? infinity : measure.together(above, measure.of_tet(q, p, r, a));
-    };
+    const Vec3 *a = &mesh.position[edge.a], *b = &mesh.position[edge.b];
+    const auto place = [&](std::size_t i) { return &mesh.position[ring[i]]; };
     RingTable table;
     const std::size_t n = ring.size();
     for (std::size_t i = 0; i + 1 < n; ++i) table.value[i][i + 1] = 0;
     for (std::size_t width = 2; width < n; ++width)
         for (std::size_t i = 0; i + width < n; ++i) {
             const std::size_t j = i + width;
-            table.value[i][j] = bound;
-            for (std::size_t k = i + 1; k < j; ++k) {
-                const double sides = measure.together(table.value[i][k], table.value[k][j]);
-                if (sides >= table.value[i][j]) continue;
-                const double value = with_triangle(sides, i, k, j, table.value[i][j]);
-                if (value >= table.value[i][j]) continue;
-                table.value[i][j] = value;
-                table.apex[i][j] = k;
+            double& best = table.value[i][j] = bound;
+            const Cuts cuts = cuts_of(table, i, j, measure, bound);
+            for (std::size_t first = 0; first < cuts.count; first += 2) {  // two triangles, four tets at once
+                const std::size_t last = std::min(first + 1, cuts.count - 1);
+                const Vec3 *p = place(i), *q = place(cuts.corner[first]), *s = place(cuts.corner[last]), *r = place(j);
+                const Four each = measure.of_each(std::array<Corners, 4>{{{p, q, r, b}, {q, p, r, a}, {p, s, r, b},
+                                                                         {s, p, r, a}}});
+                for (std::size_t c = first; c <= last; ++c) {
+                    const double above = measure.together(cuts.sides[c], each[2 * (c - first)]);
+                    const double value = measure.together(above, each[2 * (c - first) + 1]);
+                    if (value >= best) continue;
+                    best = value;
+                    table.apex[i][j] = cuts.corner[c];
+                }
             }
         }
     return table;
 }
 
-double gain_asked(SwapGoal goal) { return goal.by_energy ? least_energy_gain : least_gain; }
+/// What is to be undercut.
+double bound_of(const Mesh& mesh, std::span<const Tet> tets, SwapGoal goal) {
+    if (goal.by_energy) return (1 - least_energy_gain) * of_tets(mesh, tets, goal);
+    return goal.limit < infinity ? goal.limit : (1 - least_gain) * of_tets(mesh, tets, goal);
+}
 
 struct RingTriangles {
     Edge edge;
@@ -110,19 +149,15 @@ std::optional<Cavity> face_removal(const Mesh& mesh, Facet facet, SwapGoal goal)
     const Vertex q = mesh.tets[above][at(mirror_corner(mesh, facet))];
 
     const Measure measure{goal};
-    const double before = of_tets(mesh, std::array{below, above}, goal);
-    const double bound = (1 - gain_asked(goal)) * before;
-    double after = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vertex a = f[i], b = f[(i + 1) % 3];
-        after = measure.together(
-            after, measure.of_tet(mesh.position[p], mesh.position[a], mesh.position[b], mesh.position[q]));
-        if (after >= bound) return std::nullopt;
-    }
+    std::array<Corners, 3> around;
+    for (std::size_t i = 0; i < 3; ++i)
+        around[i] = {&mesh.position[p], &mesh.position[f[i]], &mesh.position[f[(i + 1) % 3]], &mesh.position[q]};
+    const double after = measure.of_all(around);
+    if (after >= bound_of(mesh, std::array{below, above}, goal)) return std::nullopt;
     Cavity cavity;
-    cavity.worst_before = before;
-    cavity.worst_after = after;
     cavity.removed = {below, above};
+    cavity.worst_before = of_tets(mesh, cavity.removed, goal);
+    cavity.worst_after = after;
     for (std::size_t i = 0; i < 3; ++i)
         cavity.added.push_back({{p, f[i], f[(i + 1) % 3], q}, mesh.region[below]});
     return cavity;
@@ -133,14 +168,13 @@ std::optional<Cavity> edge_removal(const Mesh& mesh, const Shell& shell, Edge ed
     const Constraint held = constraint(mesh, shell);
     if (held.rigid() || std::popcount(held.patches) > 1) return std::nullopt;
 
-    const double before = of_tets(mesh, shell.tets, goal);
-    const double bound = (1 - gain_asked(goal)) * before;
+    const double bound = bound_of(mesh, shell.tets, goal);
     const auto table = triangulate_ring(mesh, edge, shell.ring, Measure{goal}, bound);
     const double after = table.value[0][shell.ring.size() - 1];
     if (after >= bound) return std::nullopt;
 
     Cavity cavity;
-    cavity.worst_before = before;
+    cavity.worst_before = of_tets(mesh, shell.tets, goal);
     cavity.worst_after = after;
     const Patch patch = shell.closed ? Patch{} : Patch(std::countr_zero(held.patches));
     cavity.removed = shell.tets;

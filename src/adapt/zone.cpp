@@ -92,14 +92,11 @@ double aspect_ratio(const Zone& zone, int cell) {
     return tet_aspect_ratio(zone.place[at(v[0])], zone.place[at(v[1])], zone.place[at(v[2])], zone.place[at(v[3])]);
 }
 
-FourTets four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places) {
-    FourTets tets;
+FourPlaces four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places) {
+    FourPlaces tets;
     for (std::size_t i = 0; i < 4; ++i) {
         const auto& v = zone.corners[std::min(first + i, zone.corners.size() - 1)];
-        set(tets.a, i, places[at(v[0])]);
-        set(tets.b, i, places[at(v[1])]);
-        set(tets.c, i, places[at(v[2])]);
-        set(tets.d, i, places[at(v[3])]);
+        for (std::size_t k = 0; k < 4; ++k) tets[i][k] = &places[at(v[k])];
     }
     return tets;
 }

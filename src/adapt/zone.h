@@ -40,7 +40,7 @@ void find_sizes(Zone& zone, const Snapshot& at_time);
 
 [[nodiscard]] double aspect_ratio(const Zone& zone, int cell);
 /// The corners of four cells from the `first` on, at `places`, one per vertex; past the last cell, that one again.
-[[nodiscard]] FourTets four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places);
+[[nodiscard]] FourPlaces four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places);
 void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star);
 [[nodiscard]] Freedom freedom(const Zone& zone, int vertex);
 

@@ -38,8 +38,19 @@ inline Four square_root(const Four& a) {
     return root;
 }
 
+/// Is a > b in all four?
+inline bool all_greater(const Four& a, const Four& b) {
+    const auto is = a.all > b.all;
+    return (is[0] & is[1] & is[2] & is[3]) != 0;
+}
+
 /// Four points or vectors at once.
 using FourVec3 = Vector3<Four>;
+
+inline FourVec3 four_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return {Four(Four::Register{a.x, b.x, c.x, d.x}), Four(Four::Register{a.y, b.y, c.y, d.y}),
+            Four(Four::Register{a.z, b.z, c.z, d.z})};
+}
 
 inline FourVec3 four_times(const Vec3& a) { return {a.x, a.y, a.z}; }
 

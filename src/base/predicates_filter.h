@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/vec3.h"
+#include "base/four.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +31,10 @@ inline constexpr double insphere_factor = 75.0 * eps * 75.0 * eps;
 /// Whether the sign of the rounded determinant of the differences u, v, w is right.
 inline bool certain(double det, double uu, double vv, double ww) {
     return det * det > orient3d_factor * (uu * vv * ww) + tiny;
+}
+
+inline bool all_certain(const Four& det, const Four& uu, const Four& vv, const Four& ww) {
+    return all_greater(det * det, orient3d_factor * (uu * vv * ww) + tiny);
 }
 
 [[nodiscard]] inline int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

@@ -54,14 +54,30 @@ double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
     return shape.ratio;
 }
 
-KROPLA_FOR_EACH_PROCESSOR
-void tet_aspect_ratios(const FourTets& tets, Four& ratios) {
+namespace {
+
+inline Shape<Four> shape_of(const FourTets& tets, Four& ratios) {
     const auto& [a, b, c, d] = tets;
     const auto shape = shape_of(b - a, c - a, d - a);
     ratios = shape.ratio;
+    if (all_greater(shape.v6, 0) && filter::all_certain(shape.v6, shape.uu, shape.vv, shape.ww)) return shape;
     for (std::size_t i = 0; i < 4; ++i)
-        if (!(shape.v6[i] > 0 && filter::certain(shape.v6[i], shape.uu[i], shape.vv[i], shape.ww[i])))
-            ratios.set(i, tet_aspect_ratio(one_of(a, i), one_of(b, i), one_of(c, i), one_of(d, i)));
+        ratios.set(i, tet_aspect_ratio(one_of(a, i), one_of(b, i), one_of(c, i), one_of(d, i)));
+    return shape;
+}
+
+}  // namespace
+
+KROPLA_FOR_EACH_PROCESSOR
+void tet_aspect_ratios(const FourTets& tets, Four& ratios) { shape_of(tets, ratios); }
+
+KROPLA_FOR_EACH_PROCESSOR
+void tet_aspect_ratios(const FourPlaces& tets, Four& ratios) { shape_of(gathered(tets), ratios); }
+
+KROPLA_FOR_EACH_PROCESSOR
+void tet_aspect_ratios(const FourPlaces& tets, Four& ratios, Four& energies) {
+    const auto shape = shape_of(gathered(tets), ratios);
+    energies = shape.v6 / 6 * (ratios * ratios) * (ratios * ratios);
 }
 
 // As above with corner b as the origin, so that of u, v, w only u = a - b moves with a; F = |m| N / (2 V6^2),

@@ -29,7 +29,7 @@ TEST(ProposeAll, AsksForEachAndKeepsTheOrder) {
         ASSERT_EQ(proposals.size(), 334u);
         for (std::size_t i = 0; i < proposals.size(); ++i) {
             EXPECT_EQ(proposals[i].asked, 3 * i);
-            EXPECT_EQ(proposals[i].cavity.removed, std::vector{Tet(3 * i)});
+            EXPECT_EQ(proposals[i].what.removed, std::vector{Tet(3 * i)});
         }
     }
 }

@@ -52,6 +52,7 @@ TEST(TetShape, FourAtOnceHaveTheBitsOfEach) {
     for (int round = 0; round < 2000; ++round) {
         std::array<Corners, 4> each;
         FourTets four;
+        FourPlaces places;
         for (std::size_t i = 0; i < 4; ++i) {
             Corners& t = each[i] = random_tet(random);
             if (random.below(8) == 0) std::swap(t[0], t[1]);
@@ -60,10 +61,21 @@ TEST(TetShape, FourAtOnceHaveTheBitsOfEach) {
             set(four.b, i, t[1]);
             set(four.c, i, t[2]);
             set(four.d, i, t[3]);
+            places[i] = {&t[0], &t[1], &t[2], &t[3]};
         }
-        Four ratios;
+        Four ratios, by_place, again, energies;
         tet_aspect_ratios(four, ratios);
-        for (std::size_t i = 0; i < 4; ++i) ASSERT_EQ(ratios[i], aspect_ratio(each[i])) << "round " << round;
+        tet_aspect_ratios(places, by_place);
+        tet_aspect_ratios(places, again, energies);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto& [a, b, c, d] = each[i];
+            const double ratio = aspect_ratio(each[i]);
+            ASSERT_EQ(ratios[i], ratio) << "round " << round;
+            ASSERT_EQ(by_place[i], ratio) << "round " << round;
+            ASSERT_EQ(again[i], ratio) << "round " << round;
+            if (std::isfinite(ratio))
+                ASSERT_EQ(energies[i], tet_volume(a, b, c, d) * (ratio * ratio) * (ratio * ratio)) << "round " << round;
+        }
     }
 }
 
