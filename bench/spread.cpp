@@ -61,9 +61,9 @@ std::vector<Vertex> body_vertices(const Mesh& mesh) {
 using Stiffness = std::array<std::array<double, 4>, 4>;
 
 /// Of a cell: its volume times the products of its shape functions' gradients; or those products alone.
-Stiffness stiffness(const Zone& zone, std::size_t cell, bool stiffened) {
+Stiffness stiffness(const Mesh& mesh, Tet t, bool stiffened) {
     std::array<Vec3, 4> x, gradient;
-    for (std::size_t i = 0; i < 4; ++i) x[i] = zone.start[at(zone.corners[cell][i])];
+    for (std::size_t i = 0; i < 4; ++i) x[i] = mesh.position[mesh.tets[t][i]];
     const double six_volumes = determinant(x[1] - x[0], x[2] - x[0], x[3] - x[0]);
     gradient[1] = cross(x[2] - x[0], x[3] - x[0]) / six_volumes;
     gradient[2] = cross(x[3] - x[0], x[1] - x[0]) / six_volumes;
@@ -76,8 +76,9 @@ Stiffness stiffness(const Zone& zone, std::size_t cell, bool stiffened) {
     return k;
 }
 
-/// The system for one component, where only vertices that are `open` may change it.
+/// The system for one component, by the mesh's vertices, where only those that are `open` may change it.
 struct System {
+    const Mesh& mesh;
     const Zone& zone;
     const std::vector<Stiffness>& cells;
     std::vector<char> open;
@@ -86,9 +87,9 @@ struct System {
     [[nodiscard]] std::vector<double> product(const std::vector<double>& u) const {
         std::vector<double> result(u.size(), 0.0);
         for (std::size_t c = 0; c < cells.size(); ++c) {
-            const auto& v = zone.corners[c];
+            const auto& v = mesh.tets[zone.cells[c]];
             for (std::size_t i = 0; i < 4; ++i)
-                for (std::size_t j = 0; j < 4; ++j) result[at(v[i])] += cells[c][i][j] * u[at(v[j])];
+                for (std::size_t j = 0; j < 4; ++j) result[at(v[i].value)] += cells[c][i][j] * u[at(v[j].value)];
         }
         for (std::size_t v = 0; v < u.size(); ++v)
             if (open[v] == 0) result[v] = 0;
@@ -98,7 +99,7 @@ struct System {
     [[nodiscard]] std::vector<double> diagonal() const {
         std::vector<double> d(open.size(), 0.0);
         for (std::size_t c = 0; c < cells.size(); ++c)
-            for (std::size_t i = 0; i < 4; ++i) d[at(zone.corners[c][i])] += cells[c][i][i];
+            for (std::size_t i = 0; i < 4; ++i) d[at(mesh.tets[zone.cells[c]][i].value)] += cells[c][i][i];
         return d;
     }
 };
@@ -138,21 +139,20 @@ int solve(const System& system, std::vector<double>& u) {
     return iterations;
 }
 
-/// Puts the zone's vertices where the harmonic displacement takes them; the first `bodies` are of bodies
-/// and stand there already. Returns the number of iterations.
-int spread_harmonically(Zone& zone, std::size_t bodies, bool stiffened) {
-    std::vector<Stiffness> cells(zone.cells.size());
-    for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = stiffness(zone, c, stiffened);
+/// Puts the zone's vertices where the harmonic displacement takes them; those of bodies stand there already. `mesh`
+/// is as it was before. Returns the number of iterations.
+int spread_harmonically(const Mesh& mesh, Zone& zone, bool stiffened) {
+    std::vector<Stiffness> cells;
+    for (Tet t : zone.cells) cells.push_back(stiffness(mesh, t, stiffened));
     int iterations = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        System system{zone, cells, std::vector<char>(zone.vertices.size(), 0)};
-        std::vector<double> u(zone.vertices.size(), 0.0);
-        for (std::size_t v = 0; v < u.size(); ++v) {
-            system.open[v] = v >= bodies && freedom(zone, static_cast<int>(v)).along[at(axis)];
-            if (v < bodies) u[v] = zone.place[v][axis] - zone.start[v][axis];
-        }
+        System system{mesh, zone, cells, std::vector<char>(mesh.position.size(), 0)};
+        std::vector<double> u(mesh.position.size(), 0.0);
+        for (Vertex v : zone.vertices) system.open[at(v.value)] = freedom(zone, v).along[at(axis)];
+        for (Vertex v : zone.bodies) u[at(v.value)] = zone.place[v][axis] - mesh.position[v][axis];
         iterations += solve(system, u);
-        for (std::size_t v = bodies; v < u.size(); ++v) zone.place[v][axis] = zone.start[v][axis] + u[v];
+        for (Vertex v : zone.vertices)
+            if (system.open[at(v.value)] != 0) zone.place[v][axis] = mesh.position[v][axis] + u[at(v.value)];
     }
     return iterations;
 }
@@ -176,15 +176,16 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 bool step(Way way, Mesh& mesh, const Domain& domain, double t0, double t1, Zone& zone, Outcome& outcome) {
     const std::vector<std::vector<Vertex>> bodies = {body_vertices(mesh)};
     Mesh moved = mesh;
+    clear(zone);
     const double begin = cpu_seconds();
     const bool arrived = move_boundary(moved, domain, bodies, t0, t1, zone).arrived;
     if (way != Way::ours)
-        outcome.iterations += spread_harmonically(zone, bodies.front().size(), way == Way::stiffened);
+        outcome.iterations += spread_harmonically(mesh, zone, way == Way::stiffened);
     const double spread = cpu_seconds();
-    if (way == Way::ours ? !arrived : !check_way(zone, least_volume_kept).arrived) return false;
+    if (way == Way::ours ? !arrived : !check_way(zone, mesh, mesh.position, least_volume_kept).arrived) return false;
     const double checked = cpu_seconds();
     find_sizes(zone, snapshot(domain, t1));
-    optimise_places(zone, AdaptOptions{});
+    optimise_places(zone, mesh, AdaptOptions{});
     outcome.spread_seconds += spread - begin;
     outcome.optimise_seconds += cpu_seconds() - checked;
     write_places(zone, mesh);
@@ -197,14 +198,14 @@ Outcome run(Way way, Mesh mesh, int steps) {
     Zone zone;
     for (int i = 0; i < steps; ++i) {
         if (!step(way, mesh, domain, end * i / case_steps, end * (i + 1) / case_steps, zone, outcome)) break;
-        const auto bad = std::ranges::count_if(zone.ratio, [](double ratio) { return ratio > limit; });
+        const auto bad = std::ranges::count_if(zone.cells, [&](Tet t) { return zone.ratio[t] > limit; });
         if (bad == 0 && outcome.good_steps == i) ++outcome.good_steps;
         ++outcome.steps;
         if (outcome.steps % report_every != 0) continue;
         outcome.above.push_back(bad);
         double sum = 0;
-        for (double ratio : zone.ratio) sum += ratio;
-        outcome.mean.push_back(sum / static_cast<double>(zone.ratio.size()));
+        for (Tet t : zone.cells) sum += zone.ratio[t];
+        outcome.mean.push_back(sum / static_cast<double>(zone.cells.size()));
     }
     return outcome;
 }

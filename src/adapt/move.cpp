@@ -22,6 +22,8 @@ namespace {
 constexpr double reach_in_body_sizes = 8.0;    // how far a displacement is felt
 constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
 
+constexpr std::size_t too_much = 2;  // of a zone, in what is in reach: then the rest is left out
+
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The motion of one body over a step.
@@ -133,35 +135,36 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displac
     return positive_share(e, de, least);
 }
 
-double safe_fraction(const Zone& zone, std::size_t cell, double least) {
-    const auto& v = zone.corners[cell];
+double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& start, const Array<Vertex, Vec3>& place,
+                     double least) {
+    const auto& v = mesh.tets[t];
     std::array<Vec3, 3> e, de;
     for (int i = 0; i < 3; ++i) {
-        e[at(i)] = zone.start[at(v[at(i + 1)])] - zone.start[at(v[0])];
-        de[at(i)] = zone.place[at(v[at(i + 1)])] - zone.place[at(v[0])] - e[at(i)];
+        e[at(i)] = start[v[at(i + 1)]] - start[v[0]];
+        de[at(i)] = place[v[at(i + 1)]] - place[v[0]] - e[at(i)];
     }
     return positive_share(e, de, least);
 }
 
-/// Adds the bodies' vertices and returns where they go: rigidly with the body, but for the columns of layers,
-/// which stand on their wall at the end as high as the gaps there let them.
-std::vector<Vec3> add_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
-                 std::span<const std::vector<Vertex>> bodies, Zone& zone) {
-    std::vector<Vec3> goals;
+/// Puts the bodies' vertices where they go: rigidly with the body, but for the columns of layers, which stand on
+/// their wall at the end as high as the gaps there let them.
+void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
+                  std::span<const std::vector<Vertex>> bodies, Zone& zone) {
+    zone.bodies.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i)
         for (Vertex v : bodies[i]) {
-            add_held(zone, mesh, v);
-            goals.push_back(mesh.position[v] + travels[i].displacement(mesh.position[v]));
+            zone.bodies.push_back(v);
+            zone.moves[v] = Zone::with_body;
+            zone.place[v] = mesh.position[v] + travels[i].displacement(mesh.position[v]);
         }
     for (const PrismLayer& layer : mesh.layers) {
         std::vector<Vec3> wall;
         for (int column = 0; column < count_columns(layer); ++column)
-            wall.push_back(goals[at(zone.number(column_vertex(layer, column, 0)))]);
+            wall.push_back(zone.place[column_vertex(layer, column, 0)]);
         const auto places = column_places(layer, wall, at_end);
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (i % static_cast<std::size_t>(layer.count + 1) != 0) goals[at(zone.number(layer.columns[i]))] = places[i];
+            if (i % static_cast<std::size_t>(layer.count + 1) != 0) zone.place[layer.columns[i]] = places[i];
     }
-    return goals;
 }
 
 /// A tet of the surroundings at the body.
@@ -182,44 +185,52 @@ bool out_of_reach(std::span<const Travel> travels, const Vec3& x) {
     });
 }
 
-/// Finds the tets of the surroundings with a vertex in reach of a body, and those beside them, outwards from
-/// the bodies.
-void find_reached(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
-                  IndexSet<Tet>& found) {
-    constexpr std::size_t soon = 8;
-    std::vector<Tet> front;
-    const auto add = [&](Tet t) {
-        if (!found.contains(t) && mesh.region[t] == surroundings) {
-            found.insert(t);
-            front.push_back(t);
-        }
-    };
+/// Takes in all cells of the surroundings with a vertex in reach of a body, outwards from those that are there. What
+/// has come out of reach stays, until there is too much of it.
+void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
+               Zone& zone) {
+    std::vector<Tet> cells;
+    const auto is_there = [&](Vertex v) { return zone.has.contains(v); };
     for (const auto& body : bodies)
-        if (const auto t = tet_beside(mesh, body)) add(*t);
-    const auto is_out = [&](Vertex v) { return out_of_reach(travels, mesh.position[v]); };
-    for (std::size_t i = 0; i < front.size(); ++i) {
-        if (i + soon < front.size()) {  // it takes long to come from memory
-            __builtin_prefetch(&mesh.tets[front[i + soon]]);
-            __builtin_prefetch(&mesh.neighbour[front[i + soon]]);
+        if (std::ranges::none_of(body, is_there))
+            if (const auto t = tet_beside(mesh, body)) cells.push_back(*t);
+    add_cells(zone, mesh, cells);
+    std::vector<Vertex> front;
+    zone.has.for_each([&](Vertex v) { front.push_back(v); });
+    std::vector<Tet> around;
+    while (!front.empty()) {
+        cells.clear();
+        for (Vertex v : front) {
+            if ((zone.axes[v] & Zone::rim) == 0 || !alive(mesh, v) || out_of_reach(travels, mesh.position[v])) continue;
+            ball(mesh, v, around);
+            for (Tet t : around)
+                if (mesh.region[t] == surroundings && !zone.holds.contains(t)) cells.push_back(t);
         }
-        if (std::ranges::all_of(mesh.tets[front[i]], is_out)) continue;
-        for (Tet n : mesh.neighbour[front[i]])
-            if (n.exists()) add(n);
+        add_cells(zone, mesh, cells);
+        front.clear();
+        for (Tet t : cells) front.insert(front.end(), mesh.tets[t].begin(), mesh.tets[t].end());
+        std::ranges::sort(front);
+        const auto repeated = std::ranges::unique(front);
+        front.erase(repeated.begin(), repeated.end());
     }
 }
 
-/// Gathers the bodies' vertices, what is in reach of them, and where the vertices are to go.
+/// Gathers what is in reach of the bodies, and where the vertices are to go.
 void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
                     std::span<const std::vector<Vertex>> bodies, Zone& zone) {
-    clear(zone);
-    const auto goals = add_bodies(mesh, at_end, travels, bodies, zone);
-    find_reached(mesh, travels, bodies, zone.holds);
-    close(zone, mesh);
-    std::ranges::copy(goals, zone.place.begin());
-    for_all(zone.vertices.size() - goals.size(), [&](std::size_t i) {
-        const std::size_t v = goals.size() + i;
-        if (!out_of_reach(travels, zone.start[v])) zone.place[v] += spread(travels, at_start, zone.start[v]);
+    reach_out(mesh, travels, bodies, zone);
+    place_bodies(mesh, at_end, travels, bodies, zone);
+    list_vertices(zone, mesh);
+    for_all(zone.vertices.size(), [&](std::size_t i) {
+        const Vertex v = zone.vertices[i];
+        if (zone.moves[v] == Zone::with_body) return;
+        zone.place[v] = mesh.position[v];
+        if (out_of_reach(travels, mesh.position[v])) return;
+        zone.moves[v] = Zone::by_itself;
+        zone.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, v));
     });
+    list_cells(zone, mesh);
+    if (zone.holds.size() > too_much * zone.cells.size()) shrink(zone, mesh);
 }
 
 /// Which of four cells keep `least` of their volume on the way without doubt, told by their sizes: a determinant
@@ -248,14 +259,14 @@ double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<V
     return fraction;
 }
 
-MoveReport check_way(const Zone& zone, double least) {
+MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least) {
     std::vector<double> safe(zone.cells.size(), 1);
     for_all((safe.size() + 3) / 4, [&](std::size_t four) {
         const std::size_t first = 4 * four;
         std::array<bool, 4> is_safe;
-        tell_safe(four_cells(zone, first, zone.start), four_cells(zone, first, zone.place), least, is_safe);
+        tell_safe(four_cells(zone, mesh, first, start), four_cells(zone, mesh, first, zone.place), least, is_safe);
         for (std::size_t i = 0; i < 4 && first + i < safe.size(); ++i)
-            if (!is_safe[i]) safe[first + i] = safe_fraction(zone, first + i, least);
+            if (!is_safe[i]) safe[first + i] = safe_fraction(mesh, zone.cells[first + i], start, zone.place, least);
     });
     MoveReport report{true, 1, {}};
     for (std::size_t c = 0; c < safe.size(); ++c)
@@ -266,8 +277,9 @@ MoveReport check_way(const Zone& zone, double least) {
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                          double t1, Zone& zone) {
     constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
+    fit(zone, mesh);
     gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
-    const MoveReport report = check_way(zone, least_volume_kept);
+    const MoveReport report = check_way(zone, mesh, mesh.position, least_volume_kept);
     if (report.arrived) write_places(zone, mesh);
     return report;
 }

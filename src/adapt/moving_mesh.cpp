@@ -72,10 +72,11 @@ MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& o
 
 void MovingMesh::begin_step() {
     for (Mesh* mesh : {&current_, &before_}) copy_changed(*mesh, reference_, replaced_, moved_);
+    follow(zone_, current_, replaced_);
+    begin_motion(zone_);
     replaced_.clear();
     moved_.clear();
-    touched_.clear();
-    clear(zone_);
+    refined_.clear();
     stuck_.reset();
     statistics_ = {};
 }
@@ -97,7 +98,8 @@ const Changes& MovingMesh::refine() {
     }
     note_replaced(changes);
     copy_changed(before_, current_, replaced_, changes.vertices);
-    touched_ = changes.cells;
+    follow(zone_, current_, replaced_);
+    refined_ = changes.cells;
     return changes;
 }
 
@@ -106,7 +108,6 @@ void MovingMesh::move_boundary(double t) {
     double here = time_;
     while (statistics_.legs < most_legs) {
         ++statistics_.legs;
-        touched_.insert(touched_.end(), zone_.cells.begin(), zone_.cells.end());
         const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, t, zone_);
         if (report.arrived) {
             note_moved();
@@ -127,21 +128,12 @@ void MovingMesh::move_boundary(double t) {
 }
 
 void MovingMesh::optimise() {
-    if (stuck_) return;
-    optimise_at(target_time_);
-    // What earlier legs moved is looked after too.
-    if (touched_.empty()) return;
-    touched_.insert(touched_.end(), zone_.cells.begin(), zone_.cells.end());
-    gather(zone_, current_, touched_);
-    find_sizes(zone_, snapshot(domain_, target_time_));
-    for (std::size_t v = 0; v < zone_.vertices.size(); ++v) zone_.start[v] = before_.position[zone_.vertices[v]];
-    measure(zone_);
-    note_moved();
+    if (!stuck_) optimise_at(target_time_);
 }
 
 void MovingMesh::optimise_at(double t) {
     find_sizes(zone_, snapshot(domain_, t));
-    statistics_.optimised.moved += optimise_places(zone_, options_);
+    statistics_.optimised.moved += optimise_places(zone_, current_, options_);
     statistics_.optimised.smoothing_sweeps += options_.relaxations;
     write_places(zone_, current_);
 }
@@ -151,7 +143,7 @@ std::optional<Refusal> MovingMesh::refusal() const {
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;
-    const MoveReport way = check_way(zone_, least_volume_kept);
+    const MoveReport way = check_way(zone_, current_, before_.position, least_volume_kept);
     if (way.arrived) return std::nullopt;
     return Refusal{describe(before_, way.limiting, "would be turned inside out on its way"), way.limiting,
                    way.fraction * (target_time_ - time_)};
@@ -171,11 +163,14 @@ std::optional<Refusal> MovingMesh::narrow_gap() const {
 std::optional<Refusal> MovingMesh::worst_cell() const {
     Refusal refusal;
     double worst = options_.floor;
-    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
-        if (zone_.ratio[c] > worst) {
-            worst = zone_.ratio[c];
-            refusal.limiting = zone_.cells[c];
-        }
+    const auto look_at = [&](Tet t, double ratio) {
+        if (ratio <= worst) return;
+        worst = ratio;
+        refusal.limiting = t;
+    };
+    for (Tet t : zone_.cells) look_at(t, zone_.ratio[t]);
+    for (Tet t : refined_)
+        if (alive(current_, t)) look_at(t, aspect_ratio(current_, t));
     if (!refusal.limiting.exists()) return std::nullopt;
     char what[80];
     std::snprintf(what, sizeof what, "would have R/r %.4g, above the limit %.4g", worst, options_.floor);
@@ -239,12 +234,14 @@ const Changes& MovingMesh::accept() {
 /// The cells that the step has made worse than `ratio`, or has left so.
 std::vector<Tet> MovingMesh::cells_above(double ratio) const {
     std::vector<Tet> cells;
-    for (std::size_t c = 0; c < zone_.cells.size(); ++c)
-        if (zone_.ratio[c] > ratio) cells.push_back(zone_.cells[c]);
+    std::ranges::copy_if(zone_.cells, std::back_inserter(cells), [&](Tet t) { return zone_.ratio[t] > ratio; });
     return cells;
 }
 
-void MovingMesh::note_moved() { moved_.insert(moved_.end(), zone_.vertices.begin(), zone_.vertices.end()); }
+void MovingMesh::note_moved() {
+    moved_.insert(moved_.end(), zone_.bodies.begin(), zone_.bodies.end());
+    moved_.insert(moved_.end(), zone_.vertices.begin(), zone_.vertices.end());
+}
 
 void MovingMesh::note_replaced(const Changes& changes) {
     replaced_.insert(replaced_.end(), changes.cells.begin(), changes.cells.end());

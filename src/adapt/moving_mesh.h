@@ -74,8 +74,8 @@ private:
     std::vector<std::vector<Vertex>> bodies_;  // the vertices of each body's cells
     Mesh reference_, before_, current_;
     double time_, target_time_;
-    Zone zone_;                      // what the last leg moved
-    std::vector<Tet> touched_;       // cells that moved in earlier legs of the step or were refined
+    Zone zone_;                      // what the step moves
+    std::vector<Tet> refined_;       // cells that are new in the step
     std::vector<Tet> replaced_;      // in which slots the three meshes may differ,
     std::vector<Vertex> moved_;      // and which vertices may have other places
     std::vector<Vec3> trouble_;     // where the attempts refused since the last accepted step got stuck

@@ -1,7 +1,7 @@
 // Splitting and collapsing edges towards the target size. The new vertex of a split goes to the best place
 // inside the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
 
-#include "adapt/adapt.h"
+#include "adapt/for_all.h"
 #include "adapt/propose.h"
 #include "adapt/zone.h"
 #include "base/tetrahedron.h"
@@ -119,8 +119,7 @@ public:
 
 private:
     [[nodiscard]] double size(Vertex v) const {
-        const int known = zone_.number(v);
-        if (known >= 0 && zone_.place[at(known)] == mesh_.position[v]) return zone_.size[at(known)];
+        if (zone_.has.contains(v) && zone_.place[v] == mesh_.position[v]) return zone_.size[v];
         return target_size(at_time_, mesh_.position[v]);
     }
     const Mesh& mesh_;
@@ -130,17 +129,21 @@ private:
 
 /// The edges of the zone's cells that are too long or too short. Crowds are thinned before gaps are filled;
 /// the shortest and the longest edges come first.
-std::vector<WrongEdge> wrong_edges(const Zone& zone, const AdaptOptions& o) {
+std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const Zone& zone, const AdaptOptions& o) {
+    constexpr std::size_t at_once = 4096;
     const double longest = o.split_above * o.split_above, shortest = o.collapse_below * o.collapse_below;
+    std::vector<std::vector<WrongEdge>> parts((zone.cells.size() + at_once - 1) / at_once);
+    for_all(parts.size(), [&](std::size_t part) {
+        for (std::size_t i = at_once * part; i < std::min(zone.cells.size(), at_once * (part + 1)); ++i)
+            for (const auto& [k, l] : tet_edges) {
+                const Vertex a = mesh.tets[zone.cells[i]][at(k)], b = mesh.tets[zone.cells[i]][at(l)];
+                const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
+                if (square <= longest * (size * size) && square >= shortest * (size * size)) continue;
+                parts[part].push_back({{std::min(a, b), std::max(a, b)}, zone.cells[i], std::sqrt(square) / size});
+            }
+    }, 1);
     std::vector<WrongEdge> wrong;
-    for (std::size_t cell = 0; cell < zone.cells.size(); ++cell)
-        for (const auto& [i, j] : tet_edges) {
-            const std::size_t a = at(zone.corners[cell][at(i)]), b = at(zone.corners[cell][at(j)]);
-            const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
-            if (square <= longest * (size * size) && square >= shortest * (size * size)) continue;
-            const auto [first, second] = std::minmax(zone.vertices[a], zone.vertices[b]);
-            wrong.push_back({{first, second}, zone.cells[cell], std::sqrt(square) / size});
-        }
+    for (const auto& part : parts) wrong.insert(wrong.end(), part.begin(), part.end());
     const auto rank = [](double ratio) { return ratio > 1 ? 1 + 1 / ratio : ratio; };
     std::ranges::sort(wrong, {}, [&](const WrongEdge& w) {
         return std::tuple(rank(w.ratio), w.edge.a, w.edge.b, w.cell);
@@ -164,11 +167,8 @@ std::optional<Tet> cell_at(const Mesh& mesh, const WrongEdge& wrong) {
 
 /// The ball of a vertex while the mesh still has the cells of the zone, which knows most balls.
 void ball_at_start(const Mesh& mesh, const Zone& zone, Vertex v, std::vector<Tet>& tets) {
-    const int number = zone.number(v);
-    if (number < 0 || zone.axes[at(number)] == 0) return ball(mesh, v, tets);
-    tets.clear();
-    for (int i = zone.ball_begin[at(number)]; i < zone.ball_begin[at(number) + 1]; ++i)
-        tets.push_back(zone.cells[at(zone.ball[at(i)])]);
+    if (zone.has.contains(v) && (zone.axes[v] & Zone::all_axes) != 0) tets = zone.ball[v];
+    else ball(mesh, v, tets);
 }
 
 /// Would an edge from `to` to a neighbour of `from` become too long?
@@ -208,7 +208,7 @@ std::optional<Cavity> split(const Mesh& mesh, Edge e, Tet t, const AdaptOptions&
 Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options) {
     Changes changes;
     const EdgeMeasure measure(mesh, zone, at_time);
-    const auto wrong = wrong_edges(zone, options);
+    const auto wrong = wrong_edges(mesh, zone, options);
     const auto first_long = std::ranges::find_if(wrong, [](const WrongEdge& w) { return w.ratio > 1; });
     const auto shorts = static_cast<std::size_t>(first_long - wrong.begin());
     const auto collapse = [&](std::size_t i, auto ball_of) {

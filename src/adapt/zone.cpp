@@ -5,119 +5,230 @@
 #include "mesh/cells.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace kropla {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr unsigned char all_axes = 7;
 
-int number_vertex(Zone& zone, const Mesh& mesh, Vertex v, unsigned char axes) {
-    if (const int known = zone.number(v); known >= 0) return known;
-    zone.vertices.push_back(v);
-    zone.start.push_back(mesh.position[v]);
-    zone.axes.push_back(axes);
-    return zone.number.add(v);
+/// What the facet opposite the corner lets its vertices do: the axes along which they may slide, or `rim`.
+unsigned char axes_at(const Zone& zone, const Mesh& mesh, Tet t, int corner) {
+    const Tet n = mesh.neighbour[t][at(corner)];
+    if (n.exists()) {
+        if (mesh.region[n] != mesh.region[t]) return 0;
+        return zone.holds.contains(n) ? Zone::all_axes : Zone::rim;
+    }
+    const Patch patch = mesh.patch[t][at(corner)];
+    return patch.value < box_faces ? static_cast<unsigned char>(Zone::all_axes & ~(1 << patch.value / 2)) : 0;
 }
 
-/// The axes along which the vertices of a facet of the zone may slide.
-unsigned char axes_of(const Zone& zone, const Mesh& mesh, Facet facet) {
-    const Tet n = mesh.neighbour[facet.tet][at(facet.corner)];
-    if (n.exists()) return zone.holds.contains(n) && mesh.region[n] == mesh.region[facet.tet] ? all_axes : 0;
-    const Patch patch = mesh.patch[facet.tet][at(facet.corner)];
-    return patch.value < box_faces ? static_cast<unsigned char>(all_axes & ~(1 << patch.value / 2)) : 0;
+unsigned char axes_of(const Zone& zone, const Mesh& mesh, Vertex v) {
+    unsigned char axes = Zone::all_axes, rim = 0;
+    for (Tet t : zone.ball[v])
+        for (int corner = 0; corner < 4; ++corner) {
+            if (mesh.tets[t][at(corner)] == v) continue;
+            const unsigned char here = axes_at(zone, mesh, t, corner);
+            axes &= here;
+            rim |= here & Zone::rim;
+        }
+    return axes | rim;
 }
 
-void add_cell(Zone& zone, const Mesh& mesh, Tet t) {
-    std::array<int, 4> corners{};
-    for (std::size_t i = 0; i < 4; ++i) corners[i] = number_vertex(zone, mesh, mesh.tets[t][i], all_axes);
-    zone.cells.push_back(t);
-    zone.corners.push_back(corners);
-    for (int i = 0; i < 4; ++i) {
-        const unsigned char axes = axes_of(zone, mesh, {t, i});
-        if (axes == all_axes) continue;
-        for (int corner : tet_facets[at(i)]) zone.axes[at(corners[at(corner)])] &= axes;
+/// Are there cells of the zone across all facets of the cell that the vertex is of?
+bool is_within(const Zone& zone, const Mesh& mesh, Tet t, Vertex v) {
+    for (int corner = 0; corner < 4; ++corner)
+        if (mesh.tets[t][at(corner)] != v && axes_at(zone, mesh, t, corner) != Zone::all_axes) return false;
+    return true;
+}
+
+void make_unique(std::vector<Vertex>& vertices) {
+    std::ranges::sort(vertices);
+    const auto repeated = std::ranges::unique(vertices);
+    vertices.erase(repeated.begin(), repeated.end());
+}
+
+void insert(Zone& zone, const Mesh& mesh, Tet t, std::vector<Vertex>& touched) {
+    if (!zone.holds.insert(t)) return;
+    for (Vertex v : mesh.tets[t]) {
+        zone.has.insert(v);
+        zone.ball[v].push_back(t);
+        touched.push_back(v);
     }
 }
 
-void find_balls(Zone& zone) {
-    zone.ball_begin.assign(zone.vertices.size() + 1, 0);
-    for (const auto& corners : zone.corners)
-        for (int v : corners) ++zone.ball_begin[at(v) + 1];
-    std::partial_sum(zone.ball_begin.begin(), zone.ball_begin.end(), zone.ball_begin.begin());
-    zone.ball.resize(4 * zone.cells.size());
-    for (std::size_t cell = zone.cells.size(); cell-- > 0;)  // backwards: each ball ends in ascending order
-        for (int v : zone.corners[cell]) zone.ball[at(--zone.ball_begin[at(v) + 1])] = static_cast<int>(cell);
-    zone.ball_begin.erase(zone.ball_begin.begin());
-    zone.ball_begin.push_back(static_cast<int>(zone.ball.size()));
+/// Puts the balls of vertices in order, whose cells have changed.
+void settle(Zone& zone, const Mesh& mesh, std::vector<Vertex>& touched) {
+    make_unique(touched);
+    for_all(touched.size(), [&](std::size_t i) {
+        const Vertex v = touched[i];
+        auto& ball = zone.ball[v];
+        std::erase_if(ball, [&](Tet t) { return !zone.holds.contains(t) || corner_of(mesh, t, v) < 0; });
+        std::ranges::sort(ball);
+        const auto twice = std::ranges::unique(ball);
+        ball.erase(twice.begin(), twice.end());
+        zone.axes[v] = axes_of(zone, mesh, v);
+    }, 32);
+    for (Vertex v : touched)
+        if (zone.ball[v].empty()) zone.has.erase(v);
 }
 
 }  // namespace
 
-void clear(Zone& zone) {
-    zone.holds.clear();
-    zone.cells.clear();
-    zone.corners.clear();
-    zone.vertices.clear();
-    zone.start.clear();
-    zone.axes.clear();
-    zone.number.clear();
+void fit(Zone& zone, const Mesh& mesh) {
+    const std::size_t vertices = mesh.position.size(), tets = mesh.tets.size();
+    if (zone.ball.size() < vertices) {
+        zone.ball.resize(vertices);
+        zone.axes.resize(vertices, 0);
+        zone.moves.resize(vertices, 0);
+        zone.place.resize(vertices);
+        zone.size.resize(vertices, 0);
+    }
+    if (zone.ratio.size() < tets) {
+        zone.ratio.resize(tets, 0);
+        zone.pull.resize(tets);
+    }
 }
 
-void add_held(Zone& zone, const Mesh& mesh, Vertex v) { number_vertex(zone, mesh, v, 0); }
+void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
+    fit(zone, mesh);
+    std::vector<Vertex> touched;
+    for (Tet t : cells) insert(zone, mesh, t, touched);
+    settle(zone, mesh, touched);
+}
 
-void close(Zone& zone, const Mesh& mesh) {
-    zone.cells.reserve(zone.holds.size());
-    zone.corners.reserve(zone.holds.size());
-    zone.holds.for_each([&](Tet t) { add_cell(zone, mesh, t); });
-    zone.place = zone.start;
-    find_balls(zone);
+void follow(Zone& zone, const Mesh& mesh, std::span<const Tet> replaced) {
+    if (zone.holds.size() == 0) return;
+    fit(zone, mesh);
+    IndexSet<Tet> changed;
+    for (Tet t : replaced)
+        if (changed.insert(t)) zone.holds.erase(t);
+    std::vector<Tet> cells;
+    IndexSet<Vertex> touched;
+    changed.for_each([&](Tet t) {
+        if (at(t.value) >= mesh.tets.size() || !alive(mesh, t)) return;
+        for (Vertex v : mesh.tets[t]) touched.insert(v);
+        if (mesh.region[t] != surroundings) return;
+        cells.push_back(t);
+        zone.holds.insert(t);
+    });
+    touched.for_each([&](Vertex v) { std::erase_if(zone.ball[v], [&](Tet t) { return changed.contains(t); }); });
+    for (Tet t : cells)
+        for (Vertex v : mesh.tets[t]) {
+            auto& ball = zone.ball[v];
+            ball.insert(std::ranges::upper_bound(ball, t), t);
+            zone.has.insert(v);
+            if (!is_within(zone, mesh, t, v)) zone.axes[v] = 0;  // to be asked anew
+        }
+    touched.for_each([&](Vertex v) {
+        // Where all was within the zone, and what is new is too, it still is.
+        if (zone.axes[v] != Zone::all_axes) zone.axes[v] = axes_of(zone, mesh, v);
+    });
+    zone.has.for_each([&](Vertex v) {
+        if (alive(mesh, v) && !zone.ball[v].empty()) return;
+        zone.ball[v].clear();
+        zone.has.erase(v);
+    });
+}
+
+void shrink(Zone& zone, const Mesh& mesh) {
+    IndexSet<Tet> stay;
+    for (Tet t : zone.cells) stay.insert(t);
+    std::vector<Tet> leave;
+    zone.holds.for_each([&](Tet t) {
+        if (!stay.contains(t)) leave.push_back(t);
+    });
+    std::vector<Vertex> touched;
+    for (Tet t : leave) {
+        zone.holds.erase(t);
+        touched.insert(touched.end(), mesh.tets[t].begin(), mesh.tets[t].end());
+    }
+    settle(zone, mesh, touched);
+}
+
+void clear(Zone& zone) {
+    zone.has.for_each([&](Vertex v) {
+        zone.ball[v].clear();
+        zone.moves[v] = 0;
+    });
+    zone.has.clear();
+    zone.holds.clear();
+    begin_motion(zone);
+}
+
+void begin_motion(Zone& zone) {
+    for (Vertex v : zone.vertices) zone.moves[v] = 0;
+    for (Vertex v : zone.bodies) zone.moves[v] = 0;
+    zone.bodies.clear();
+    zone.vertices.clear();
+    zone.cells.clear();
 }
 
 void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
     clear(zone);
-    for (Tet t : cells)
-        if (alive(mesh, t)) zone.holds.insert(t);
-    close(zone, mesh);
+    std::vector<Tet> living;
+    std::ranges::copy_if(cells, std::back_inserter(living), [&](Tet t) { return alive(mesh, t); });
+    add_cells(zone, mesh, living);
+    list_vertices(zone, mesh);
+    for (Vertex v : zone.vertices) {
+        zone.moves[v] = Zone::by_itself;
+        zone.place[v] = mesh.position[v];
+    }
+    list_cells(zone, mesh);
+}
+
+void list_vertices(Zone& zone, const Mesh& mesh) {
+    zone.vertices.clear();
+    zone.has.for_each([&](Vertex v) {
+        if (alive(mesh, v)) zone.vertices.push_back(v);
+    });
+}
+
+void list_cells(Zone& zone, const Mesh& mesh) {
+    zone.cells.clear();
+    zone.holds.for_each([&](Tet t) {
+        const auto& v = mesh.tets[t];
+        if ((zone.moves[v[0]] | zone.moves[v[1]] | zone.moves[v[2]] | zone.moves[v[3]]) != 0) zone.cells.push_back(t);
+    });
 }
 
 void find_sizes(Zone& zone, const Snapshot& at_time) {
-    zone.size.resize(zone.place.size());
-    for_all(zone.place.size(), [&](std::size_t v) { zone.size[v] = target_size(at_time, zone.place[v]); });
+    for_all(zone.vertices.size(), [&](std::size_t i) {
+        const Vertex v = zone.vertices[i];
+        zone.size[v] = target_size(at_time, zone.place[v]);
+    });
 }
 
-double aspect_ratio(const Zone& zone, int cell) {
-    const auto& v = zone.corners[at(cell)];
-    return tet_aspect_ratio(zone.place[at(v[0])], zone.place[at(v[1])], zone.place[at(v[2])], zone.place[at(v[3])]);
+double aspect_ratio(const Zone& zone, const Mesh& mesh, Tet t) {
+    const auto& v = mesh.tets[t];
+    return tet_aspect_ratio(zone.place[v[0]], zone.place[v[1]], zone.place[v[2]], zone.place[v[3]]);
 }
 
-FourPlaces four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places) {
+FourPlaces four_cells(const Zone& zone, const Mesh& mesh, std::size_t first, const Array<Vertex, Vec3>& places) {
     FourPlaces tets;
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto& v = zone.corners[std::min(first + i, zone.corners.size() - 1)];
-        for (std::size_t k = 0; k < 4; ++k) tets[i][k] = &places[at(v[k])];
+        const auto& v = mesh.tets[zone.cells[std::min(first + i, zone.cells.size() - 1)]];
+        for (std::size_t k = 0; k < 4; ++k) tets[i][k] = &places[v[k]];
     }
     return tets;
 }
 
-void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star) {
+void star_of_ball(const Zone& zone, const Mesh& mesh, Vertex vertex, std::vector<StarFacet>& star) {
     star.clear();
-    for (int i = zone.ball_begin[at(vertex)]; i < zone.ball_begin[at(vertex) + 1]; ++i) {
-        const auto& v = zone.corners[at(zone.ball[at(i)])];
-        const std::size_t corner = v[0] == vertex ? 0 : v[1] == vertex ? 1 : v[2] == vertex ? 2 : 3;
-        const auto& f = tet_facets[corner];
-        star.push_back({zone.place[at(v[at(f[0])])], zone.place[at(v[at(f[1])])], zone.place[at(v[at(f[2])])]});
+    for (Tet t : zone.ball[vertex]) {
+        const auto [a, b, c] = facet_vertices(mesh, {t, corner_of(mesh, t, vertex)});
+        star.push_back({zone.place[a], zone.place[b], zone.place[c]});
     }
 }
 
-Freedom freedom(const Zone& zone, int vertex) {
-    const unsigned axes = zone.axes[at(vertex)];
+Freedom freedom(const Zone& zone, Vertex v) {
+    const unsigned axes = zone.moves[v] == Zone::by_itself ? zone.axes[v] : 0u;
     return {{(axes & 1) != 0, (axes & 2) != 0, (axes & 4) != 0}};
 }
 
 void write_places(const Zone& zone, Mesh& mesh) {
-    for (std::size_t i = 0; i < zone.vertices.size(); ++i) mesh.position[zone.vertices[i]] = zone.place[i];
+    for (Vertex v : zone.bodies) mesh.position[v] = zone.place[v];
+    for (Vertex v : zone.vertices)
+        if (zone.moves[v] != 0) mesh.position[v] = zone.place[v];
 }
 
 }  // namespace kropla

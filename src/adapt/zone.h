@@ -4,53 +4,75 @@
 #include "adapt/star.h"
 #include "base/tetrahedron.h"
 #include "mesh/index_set.h"
-#include "mesh/numbering.h"
 
 namespace kropla {
 
-/// A part of the mesh that is moved as a whole: its cells and their vertices by numbers of its own, close
-/// together in memory, with copies of their places. Nothing in the mesh changes before `write_places`. To be
-/// kept from step to step: what it holds is used again.
-struct Zone {
-    IndexSet<Tet> holds;
-    std::vector<Tet> cells;                   // the same, in ascending order
-    std::vector<std::array<int, 4>> corners;  // per cell: numbers of its vertices
-    std::vector<Vertex> vertices;
-    std::vector<Vec3> start;                  // per vertex: its place in the mesh [m]
-    std::vector<Vec3> place;                  // per vertex: where it is to go [m]
-    std::vector<unsigned char> axes;          // per vertex: bits of the axes along which it may slide
-    std::vector<double> size;                 // per vertex: the target size there [m]
-    std::vector<int> ball_begin, ball;        // per vertex, and one more: where its cells stand in `ball`
-    std::vector<double> ratio;                // per cell: its aspect ratio at `place`
-    Numbering<Vertex> number;                 // of `vertices`
+/// What a cell does to its vertices where volumes are equalised: its centroid [m] times its weight, and its weight.
+struct Pull {
+    Vec3 moment;
+    double weight;
 };
 
-/// A zone is made in this order: it is emptied; vertices are added that do not slide, with the numbers 0, 1, ...;
-/// `holds` is filled; then it is closed.
-void clear(Zone& zone);
-void add_held(Zone& zone, const Mesh& mesh, Vertex v);
-/// Numbers the vertices and finds the balls. Vertices stay on the faces of the box they lie on; those that have
-/// cells out of the zone, or lie on an interface, are held.
-void close(Zone& zone, const Mesh& mesh);
+/// A part of the surroundings that is moved as a whole, and what its motion asks for again and again. Nothing in the
+/// mesh changes before `write_places`. To be kept from step to step: it follows a mesh whose cells are replaced by
+/// `follow`, with work in proportion to what was replaced. Arrays have the length of the mesh's and hold something
+/// where the zone is.
+struct Zone {
+    IndexSet<Tet> holds;
+    IndexSet<Vertex> has;                  // the vertices of these cells
+    Array<Vertex, std::vector<Tet>> ball;  // the cells of the zone at a vertex, in ascending order
+    Array<Vertex, unsigned char> axes;     // bits of the axes along which the vertex may slide, and `rim`
 
-/// A zone of these cells (those that are alive).
+    // Of a step: what moves in it.
+    std::vector<Vertex> bodies;            // vertices that move with a body
+    std::vector<Vertex> vertices;          // of the cells, in ascending order
+    std::vector<Tet> cells;                // with a vertex that moves, in ascending order
+    Array<Vertex, unsigned char> moves;    // whether a vertex takes part: 0, by_itself, or with_body
+    Array<Vertex, Vec3> place;             // where it is to go [m]
+    Array<Vertex, double> size;            // the target size there [m]
+    Array<Tet, double> ratio;              // of a cell of `cells`: its aspect ratio at `place`
+    Array<Tet, Pull> pull;                 // room for optimise_places
+
+    static constexpr unsigned char all_axes = 7, rim = 8;  // rim: some of its cells are not in the zone
+    static constexpr unsigned char by_itself = 1, with_body = 2;
+};
+
+/// Makes room for what the mesh has.
+void fit(Zone& zone, const Mesh& mesh);
+/// Takes cells of one region in. Their vertices stay on the faces of the box they lie on; those that have cells out
+/// of the zone, or lie on an interface or another patch, are held.
+void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
+/// The slots of `replaced` have lost their cells or have others, which join the zone if they are of the surroundings.
+void follow(Zone& zone, const Mesh& mesh, std::span<const Tet> replaced);
+/// Leaves out all cells but those listed in `cells`.
+void shrink(Zone& zone, const Mesh& mesh);
+void clear(Zone& zone);
+
+/// A zone of these cells (those that are alive), of which all vertices move that may.
 void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
+/// Nothing moves.
+void begin_motion(Zone& zone);
+void list_vertices(Zone& zone, const Mesh& mesh);
+/// Lists the cells with a vertex that moves.
+void list_cells(Zone& zone, const Mesh& mesh);
 /// Asks for the target sizes where the vertices are to go.
 void find_sizes(Zone& zone, const Snapshot& at_time);
 
-[[nodiscard]] double aspect_ratio(const Zone& zone, int cell);
-/// The corners of four cells from the `first` on, at `places`, one per vertex; past the last cell, that one again.
-[[nodiscard]] FourPlaces four_cells(const Zone& zone, std::size_t first, const std::vector<Vec3>& places);
-void star_of_ball(const Zone& zone, int vertex, std::vector<StarFacet>& star);
-[[nodiscard]] Freedom freedom(const Zone& zone, int vertex);
+/// The corners of four cells from the `first` on, at `places`; past the last cell, that one again.
+[[nodiscard]] FourPlaces four_cells(const Zone& zone, const Mesh& mesh, std::size_t first,
+                                    const Array<Vertex, Vec3>& places);
+[[nodiscard]] double aspect_ratio(const Zone& zone, const Mesh& mesh, Tet t);
+void star_of_ball(const Zone& zone, const Mesh& mesh, Vertex v, std::vector<StarFacet>& star);
+/// Of a vertex, in a step: none if it does not move or is held.
+[[nodiscard]] Freedom freedom(const Zone& zone, Vertex v);
 
 /// Moves vertices: `place` and `ratio` change. `size` is set. Returns how many were moved for the worst
 /// cells.
-int optimise_places(Zone& zone, const AdaptOptions& options);
+int optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
 /// Asks for the aspect ratios of all cells.
-void measure(Zone& zone);
+void measure(Zone& zone, const Mesh& mesh);
 /// Do all cells keep a volume of at least `least` of what they have, all the way from `start` to `place`?
-[[nodiscard]] MoveReport check_way(const Zone& zone, double least);
+[[nodiscard]] MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least);
 
 /// As for cells: see adapt.h. The zone's places are those of the mesh.
 Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options);

@@ -24,6 +24,11 @@ public:
         ++size_;
         return true;
     }
+    void erase(I i) {
+        if (!contains(i)) return;
+        words_[word_of(i)] &= ~bit_of(i);
+        --size_;
+    }
     [[nodiscard]] std::size_t size() const { return size_; }
     void clear() {
         words_.assign(words_.size(), 0);
