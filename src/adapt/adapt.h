@@ -149,10 +149,14 @@ struct MoveReport {
     Tet limiting;          // the cell that stopped it, if it did not arrive
 };
 
-/// Moves bodies rigidly from their places at `t0` to those at `t1` [s] and spreads the displacement into the
-/// surroundings, if every cell stays valid on the way; else tells how far it could go. Connectivity is
-/// unchanged. `bodies` are, per body, the vertices of its cells. `zone` becomes the surroundings that the
-/// displacement reaches.
+/// Finds where bodies that move rigidly from their places at `t0` to those at `t1` [s] take the vertices of their
+/// surroundings; nothing is moved yet. `bodies` are, per body, the vertices of its cells. `zone` becomes the
+/// surroundings that the displacement reaches.
+void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
+                    double t1, Zone& zone);
+
+/// The same, and moves them there if every cell stays valid on the way; else tells how far it could go. Connectivity
+/// is unchanged.
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                          double t1, Zone& zone);
 

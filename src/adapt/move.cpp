@@ -19,7 +19,7 @@
 namespace kropla {
 namespace {
 
-constexpr double reach_in_body_sizes = 8.0;    // how far a displacement is felt
+constexpr double reach_in_body_sizes = 6.0;    // how far a displacement is felt
 constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
 
 constexpr std::size_t too_much = 2;  // of a zone, in what is in reach: then the rest is left out
@@ -274,11 +274,16 @@ MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec
     return report;
 }
 
+void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
+                    double t1, Zone& zone) {
+    fit(zone, mesh);
+    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
+}
+
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                          double t1, Zone& zone) {
     constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
-    fit(zone, mesh);
-    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
+    place_boundary(mesh, domain, bodies, t0, t1, zone);
     const MoveReport report = check_way(zone, mesh, mesh.position, least_volume_kept);
     if (report.arrived) write_places(zone, mesh);
     return report;

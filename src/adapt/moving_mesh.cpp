@@ -71,12 +71,14 @@ MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& o
 }
 
 void MovingMesh::begin_step() {
-    for (Mesh* mesh : {&current_, &before_}) copy_changed(*mesh, reference_, replaced_, moved_);
+    const auto replaced = replaced_.list();
+    for (Mesh* mesh : {&current_, &before_}) copy_changed(*mesh, reference_, replaced, moved_);
     follow(zone_, current_, replaced_);
     begin_motion(zone_);
     replaced_.clear();
     moved_.clear();
     refined_.clear();
+    way_ = {};
     stuck_.reset();
     statistics_ = {};
 }
@@ -97,7 +99,7 @@ const Changes& MovingMesh::refine() {
         changes += repair(current_, cells_near(current_, trouble_, at_time), at_time, options);
     }
     note_replaced(changes);
-    copy_changed(before_, current_, replaced_, changes.vertices);
+    copy_changed(before_, current_, replaced_.list(), changes.vertices);
     follow(zone_, current_, replaced_);
     refined_ = changes.cells;
     return changes;
@@ -105,37 +107,50 @@ const Changes& MovingMesh::refine() {
 
 void MovingMesh::move_boundary(double t) {
     target_time_ = t;
-    double here = time_;
-    while (statistics_.legs < most_legs) {
-        ++statistics_.legs;
-        const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, t, zone_);
-        if (report.arrived) {
-            note_moved();
-            stuck_.reset();
-            return;
-        }
-        const double leg = share_of_safe * report.fraction;
-        const double next = here + leg * (t - here);
-        stuck_ = Refusal{describe(current_, report.limiting, "would be turned inside out"), report.limiting,
-                         here - time_};
-        if (leg < least_leg || !kropla::move_boundary(current_, domain_, bodies_, here, next, zone_).arrived) return;
-        note_moved();
-        optimise_at(next);
-        here = next;
-        stuck_ = Refusal{describe(current_, report.limiting, "keeps the bodies from arriving"), report.limiting,
-                         here - time_};
-    }
+    statistics_.legs = 1;
+    place_boundary(current_, domain_, bodies_, time_, t, zone_);
+    write_places(zone_, current_);
+    note_moved();
 }
 
 void MovingMesh::optimise() {
-    if (!stuck_) optimise_at(target_time_);
+    if (optimise_at(target_time_)) way_ = check_way(zone_, current_, before_.position, least_volume_kept);
+    if (!way_.arrived) move_in_legs();
 }
 
-void MovingMesh::optimise_at(double t) {
+/// Goes as far as all cells stay valid, optimises the places there, and so on.
+void MovingMesh::move_in_legs() {
+    copy_changed(current_, before_, {}, moved_);
+    double here = time_;
+    for (statistics_.legs = 1; statistics_.legs <= most_legs; ++statistics_.legs) {
+        const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, target_time_, zone_);
+        const double leg = report.arrived ? 1 : share_of_safe * report.fraction;
+        const double next = report.arrived ? target_time_ : here + leg * (target_time_ - here);
+        stuck_ = Refusal{"vertices cannot be moved without turning a cell over", Tet{}, here - time_};
+        if (!report.arrived) {
+            stuck_->why = describe(current_, report.limiting, "keeps the bodies from arriving");
+            stuck_->limiting = report.limiting;
+            if (leg < least_leg || !kropla::move_boundary(current_, domain_, bodies_, here, next, zone_).arrived) return;
+        }
+        note_moved();
+        if (!optimise_at(next)) return;
+        here = next;
+        if (!report.arrived) continue;
+        stuck_.reset();
+        way_ = check_way(zone_, current_, before_.position, least_volume_kept);
+        return;
+    }
+}
+
+/// Returns false if a cell is turned over.
+bool MovingMesh::optimise_at(double t) {
     find_sizes(zone_, snapshot(domain_, t));
-    statistics_.optimised.moved += optimise_places(zone_, current_, options_);
+    const auto moved = optimise_places(zone_, current_, options_);
+    if (!moved) return false;
+    statistics_.optimised.moved += *moved;
     statistics_.optimised.smoothing_sweeps += options_.relaxations;
     write_places(zone_, current_);
+    return true;
 }
 
 std::optional<Refusal> MovingMesh::refusal() const {
@@ -143,10 +158,9 @@ std::optional<Refusal> MovingMesh::refusal() const {
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;
-    const MoveReport way = check_way(zone_, current_, before_.position, least_volume_kept);
-    if (way.arrived) return std::nullopt;
-    return Refusal{describe(before_, way.limiting, "would be turned inside out on its way"), way.limiting,
-                   way.fraction * (target_time_ - time_)};
+    if (way_.arrived) return std::nullopt;
+    return Refusal{describe(before_, way_.limiting, "would be turned inside out on its way"), way_.limiting,
+                   way_.fraction * (target_time_ - time_)};
 }
 
 std::optional<Refusal> MovingMesh::narrow_gap() const {
@@ -213,7 +227,7 @@ Changes MovingMesh::remesh(const AdaptOptions& options) {
 const Changes& MovingMesh::accept() {
     time_ = target_time_;
     std::swap(before_, current_);
-    copy_changed(reference_, before_, replaced_, moved_);
+    copy_changed(reference_, before_, replaced_.list(), moved_);
     trouble_.clear();
 
     Changes& changes = statistics_.remeshed;
@@ -221,7 +235,7 @@ const Changes& MovingMesh::accept() {
     if (worst_aspect_ratio_of(reference_, changes.cells) > options_.floor) {
         // What passed the floor on its way stayed there: taken back, and done again without passing it.
         note_replaced(changes);
-        copy_changed(reference_, before_, replaced_, moved_);
+        copy_changed(reference_, before_, replaced_.list(), moved_);
         AdaptOptions options = options_;
         options.passing = std::min(options.passing, options.floor);
         changes = remesh(options);
@@ -244,8 +258,8 @@ void MovingMesh::note_moved() {
 }
 
 void MovingMesh::note_replaced(const Changes& changes) {
-    replaced_.insert(replaced_.end(), changes.cells.begin(), changes.cells.end());
-    replaced_.insert(replaced_.end(), changes.removed.begin(), changes.removed.end());
+    for (Tet t : changes.cells) replaced_.insert(t);
+    for (Tet t : changes.removed) replaced_.insert(t);
     moved_.insert(moved_.end(), changes.vertices.begin(), changes.vertices.end());
 }
 

@@ -43,8 +43,10 @@ public:
     /// After a refusal, remeshes where the motion got stuck; else does nothing. The solution is to be carried
     /// from reference() to before() at the vertices that are returned.
     const Changes& refine();
-    /// Moves bodies to where they are at `t` [s], in as many legs as it takes for all cells to stay valid.
+    /// Moves bodies to where they are at `t` [s], and their surroundings with them.
     void move_boundary(double t);
+    /// Optimises the places of the surroundings' vertices; if a cell would be turned over on the way, goes it again in
+    /// as many legs as it takes for all cells to stay valid.
     void optimise();
 
     /// The mesh of the step at its beginning and at its end: one connectivity, two sets of places. After
@@ -64,7 +66,8 @@ private:
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
     Changes remesh(const AdaptOptions& options);  // the reference
-    void optimise_at(double t);
+    void move_in_legs();
+    bool optimise_at(double t);
     [[nodiscard]] std::vector<Tet> cells_above(double ratio) const;
     void note_moved();
     void note_replaced(const Changes& changes);
@@ -75,8 +78,9 @@ private:
     Mesh reference_, before_, current_;
     double time_, target_time_;
     Zone zone_;                      // what the step moves
+    MoveReport way_;                 // from before() to current()
     std::vector<Tet> refined_;       // cells that are new in the step
-    std::vector<Tet> replaced_;      // in which slots the three meshes may differ,
+    IndexSet<Tet> replaced_;         // in which slots the three meshes may differ,
     std::vector<Vertex> moved_;      // and which vertices may have other places
     std::vector<Vec3> trouble_;     // where the attempts refused since the last accepted step got stuck
     std::optional<Refusal> stuck_;  // the motion did not arrive

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <span>
 #include <unordered_set>
 
@@ -24,7 +25,9 @@ constexpr int most_retreats = 5;       // vertices that are taken back may spoil
 constexpr int most_passes = 4;         // over the vertices of bad cells
 constexpr double near_the_floor = 0.8;  // of it: cells above are put right by moving vertices
 
-void equalise_volumes(Zone& zone, const Mesh& mesh) {
+/// Returns whether all cells had a volume; else nothing is moved.
+bool equalise_volumes(Zone& zone, const Mesh& mesh) {
+    std::atomic<bool> valid = true;
     for_all(zone.cells.size(), [&](std::size_t c) {
         const Tet t = zone.cells[c];
         const auto& v = mesh.tets[t];
@@ -32,7 +35,9 @@ void equalise_volumes(Zone& zone, const Mesh& mesh) {
         const double size = zone.size[v[0]] + zone.size[v[1]] + zone.size[v[2]] + zone.size[v[3]];
         const double weight = determinant(q - p, r - p, s - p) / (size * size * size);
         zone.pull[t] = {weight / 4 * (p + q + r + s), weight};
+        if (!(weight > 0)) valid = false;
     });
+    if (!valid) return false;
     for_all(zone.vertices.size(), [&](std::size_t i) {
         const Vertex v = zone.vertices[i];
         const Freedom free = freedom(zone, v);
@@ -44,6 +49,7 @@ void equalise_volumes(Zone& zone, const Mesh& mesh) {
         }
         zone.place[v] += restricted(sum.moment / sum.weight - zone.place[v], free);
     });
+    return true;
 }
 
 /// The vertices of cells worse than `above` that may move, each once, in order.
@@ -128,13 +134,24 @@ void measure(Zone& zone, const Mesh& mesh) {
     });
 }
 
-int optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
+std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
     std::vector<Vec3> moved;
     for (Vertex v : zone.vertices) moved.push_back(zone.place[v]);
-    for (int i = 0; i < options.relaxations; ++i) equalise_volumes(zone, mesh);
+    const auto take_back = [&] {
+        for (std::size_t i = 0; i < moved.size(); ++i) zone.place[zone.vertices[i]] = moved[i];
+    };
+    for (int i = 0; i < options.relaxations; ++i)
+        if (!equalise_volumes(zone, mesh)) {
+            take_back();
+            break;
+        }
     measure(zone, mesh);
     const double spoilt = std::max(options.good_enough, near_the_floor * options.floor);
     for (int i = 0; i < most_retreats && retreat(zone, mesh, moved, spoilt); ++i) {}
+    if (std::ranges::any_of(zone.cells, [&](Tet t) { return !std::isfinite(zone.ratio[t]); })) {
+        take_back();
+        return std::nullopt;
+    }
     int count = 0;
     for (int i = 0; i < most_passes; ++i) {
         const int more = optimise_worst(zone, mesh, spoilt);
@@ -149,7 +166,7 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
     gather(zone, mesh, cells);
     for (Vertex v : zone.vertices) zone.size[v] = 1;
     Changes changes;
-    optimise_places(zone, mesh, options);
+    if (!optimise_places(zone, mesh, options)) return changes;
     for (Vertex v : zone.vertices)
         if (zone.place[v] != mesh.position[v]) changes.vertices.push_back(v);
     changes.moved = static_cast<int>(changes.vertices.size());

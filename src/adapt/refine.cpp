@@ -127,20 +127,59 @@ private:
     const Snapshot& at_time_;
 };
 
+/// The bounds of an edge's length, squared, in target sizes.
+struct Bounds {
+    double shortest, longest;
+
+    [[nodiscard]] bool hold(double square, double size) const {
+        return square <= longest * (size * size) && square >= shortest * (size * size);
+    }
+};
+
+/// Which of four cells have an edge out of bounds, by the same arithmetic.
+KROPLA_FOR_EACH_PROCESSOR
+void tell_wrong(const FourPlaces& places, const std::array<Four, 4>& sizes, Bounds bounds, std::array<bool, 4>& wrong) {
+    const auto [a, b, c, d] = gathered(places);
+    const std::array<FourVec3, 4> x = {a, b, c, d};
+    Four beyond = -1;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = i + 1; j < 4; ++j) {
+            const Four size = (sizes[i] + sizes[j]) / 2, square = squared_norm(x[i] - x[j]);
+            beyond = greater(beyond, greater(square - bounds.longest * (size * size), bounds.shortest * (size * size) - square));
+        }
+    for (std::size_t i = 0; i < 4; ++i) wrong[i] = beyond[i] > 0;
+}
+
+void find_wrong_edges(const Mesh& mesh, const Zone& zone, Tet t, Bounds bounds, std::vector<WrongEdge>& wrong) {
+    for (const auto& [i, j] : tet_edges) {
+        const Vertex a = mesh.tets[t][at(i)], b = mesh.tets[t][at(j)];
+        const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
+        if (!bounds.hold(square, size)) wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});
+    }
+}
+
+void find_wrong_edges_of_four(const Mesh& mesh, const Zone& zone, std::size_t first, Bounds bounds,
+                              std::vector<WrongEdge>& wrong) {
+    std::array<Four, 4> sizes;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto& v = mesh.tets[zone.cells[std::min(first + i, zone.cells.size() - 1)]];
+        for (std::size_t k = 0; k < 4; ++k) sizes[k].set(i, zone.size[v[k]]);
+    }
+    std::array<bool, 4> is_wrong;
+    tell_wrong(four_cells(zone, mesh, first, zone.place), sizes, bounds, is_wrong);
+    for (std::size_t i = 0; i < 4 && first + i < zone.cells.size(); ++i)
+        if (is_wrong[i]) find_wrong_edges(mesh, zone, zone.cells[first + i], bounds, wrong);
+}
+
 /// The edges of the zone's cells that are too long or too short. Crowds are thinned before gaps are filled;
 /// the shortest and the longest edges come first.
 std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const Zone& zone, const AdaptOptions& o) {
     constexpr std::size_t at_once = 4096;
-    const double longest = o.split_above * o.split_above, shortest = o.collapse_below * o.collapse_below;
+    const Bounds bounds{o.collapse_below * o.collapse_below, o.split_above * o.split_above};
     std::vector<std::vector<WrongEdge>> parts((zone.cells.size() + at_once - 1) / at_once);
     for_all(parts.size(), [&](std::size_t part) {
-        for (std::size_t i = at_once * part; i < std::min(zone.cells.size(), at_once * (part + 1)); ++i)
-            for (const auto& [k, l] : tet_edges) {
-                const Vertex a = mesh.tets[zone.cells[i]][at(k)], b = mesh.tets[zone.cells[i]][at(l)];
-                const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
-                if (square <= longest * (size * size) && square >= shortest * (size * size)) continue;
-                parts[part].push_back({{std::min(a, b), std::max(a, b)}, zone.cells[i], std::sqrt(square) / size});
-            }
+        const std::size_t end = std::min(zone.cells.size(), at_once * (part + 1));
+        for (std::size_t i = at_once * part; i < end; i += 4) find_wrong_edges_of_four(mesh, zone, i, bounds, parts[part]);
     }, 1);
     std::vector<WrongEdge> wrong;
     for (const auto& part : parts) wrong.insert(wrong.end(), part.begin(), part.end());

@@ -34,13 +34,6 @@ unsigned char axes_of(const Zone& zone, const Mesh& mesh, Vertex v) {
     return axes | rim;
 }
 
-/// Are there cells of the zone across all facets of the cell that the vertex is of?
-bool is_within(const Zone& zone, const Mesh& mesh, Tet t, Vertex v) {
-    for (int corner = 0; corner < 4; ++corner)
-        if (mesh.tets[t][at(corner)] != v && axes_at(zone, mesh, t, corner) != Zone::all_axes) return false;
-    return true;
-}
-
 void make_unique(std::vector<Vertex>& vertices) {
     std::ranges::sort(vertices);
     const auto repeated = std::ranges::unique(vertices);
@@ -96,29 +89,30 @@ void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
     settle(zone, mesh, touched);
 }
 
-void follow(Zone& zone, const Mesh& mesh, std::span<const Tet> replaced) {
+void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
     if (zone.holds.size() == 0) return;
     fit(zone, mesh);
-    IndexSet<Tet> changed;
-    for (Tet t : replaced)
-        if (changed.insert(t)) zone.holds.erase(t);
     std::vector<Tet> cells;
     IndexSet<Vertex> touched;
-    changed.for_each([&](Tet t) {
+    replaced.for_each([&](Tet t) {
+        zone.holds.erase(t);
         if (at(t.value) >= mesh.tets.size() || !alive(mesh, t)) return;
         for (Vertex v : mesh.tets[t]) touched.insert(v);
-        if (mesh.region[t] != surroundings) return;
-        cells.push_back(t);
-        zone.holds.insert(t);
+        if (mesh.region[t] == surroundings) cells.push_back(t);
     });
-    touched.for_each([&](Vertex v) { std::erase_if(zone.ball[v], [&](Tet t) { return changed.contains(t); }); });
-    for (Tet t : cells)
+    for (Tet t : cells) zone.holds.insert(t);
+    const auto is_old = [&](Tet t) { return replaced.contains(t); };
+    touched.for_each([&](Vertex v) { std::erase_if(zone.ball[v], is_old); });
+    for (Tet t : cells) {
         for (Vertex v : mesh.tets[t]) {
             auto& ball = zone.ball[v];
             ball.insert(std::ranges::upper_bound(ball, t), t);
             zone.has.insert(v);
-            if (!is_within(zone, mesh, t, v)) zone.axes[v] = 0;  // to be asked anew
         }
+        for (int corner = 0; corner < 4; ++corner)
+            if (axes_at(zone, mesh, t, corner) != Zone::all_axes)
+                for (Vertex v : facet_vertices(mesh, {t, corner})) zone.axes[v] = 0;  // to be asked anew
+    }
     touched.for_each([&](Vertex v) {
         // Where all was within the zone, and what is new is too, it still is.
         if (zone.axes[v] != Zone::all_axes) zone.axes[v] = axes_of(zone, mesh, v);

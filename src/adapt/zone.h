@@ -43,7 +43,7 @@ void fit(Zone& zone, const Mesh& mesh);
 /// of the zone, or lie on an interface or another patch, are held.
 void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
 /// The slots of `replaced` have lost their cells or have others, which join the zone if they are of the surroundings.
-void follow(Zone& zone, const Mesh& mesh, std::span<const Tet> replaced);
+void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced);
 /// Leaves out all cells but those listed in `cells`.
 void shrink(Zone& zone, const Mesh& mesh);
 void clear(Zone& zone);
@@ -66,9 +66,9 @@ void star_of_ball(const Zone& zone, const Mesh& mesh, Vertex v, std::vector<Star
 /// Of a vertex, in a step: none if it does not move or is held.
 [[nodiscard]] Freedom freedom(const Zone& zone, Vertex v);
 
-/// Moves vertices: `place` and `ratio` change. `size` is set. Returns how many were moved for the worst
-/// cells.
-int optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
+/// Moves vertices: `place` and `ratio` change. `size` is set. Returns how many were moved for the worst cells; nothing,
+/// and nothing is moved, if a cell is turned over or flat at `place`.
+std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
 /// Asks for the aspect ratios of all cells.
 void measure(Zone& zone, const Mesh& mesh);
 /// Do all cells keep a volume of at least `least` of what they have, all the way from `start` to `place`?

@@ -33,7 +33,7 @@ struct Shape {
 // |m| goes under the roots of the areas, which are independent of each other and go through the pipeline
 // together.
 template <class Number>
-inline Shape<Number> shape_of(const Vector3<Number>& u, const Vector3<Number>& v, const Vector3<Number>& w) {
+[[gnu::always_inline]] inline Shape<Number> shape_of(const Vector3<Number>& u, const Vector3<Number>& v, const Vector3<Number>& w) {
     const Vector3<Number> vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
     const Number uu = squared_norm(u), vv = squared_norm(v), ww = squared_norm(w);
     const Number v6 = dot(u, vw);
@@ -56,7 +56,8 @@ double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 
 namespace {
 
-inline Shape<Four> shape_of(const FourTets& tets, Four& ratios) {
+// Always a part of what calls it, so that it is compiled for the same processor.
+[[gnu::always_inline]] inline Shape<Four> shape_of(const FourTets& tets, Four& ratios) {
     const auto& [a, b, c, d] = tets;
     const auto shape = shape_of(b - a, c - a, d - a);
     ratios = shape.ratio;

@@ -20,8 +20,8 @@ struct FourTets {
 /// The same, where they are: per tet, per corner.
 using FourPlaces = std::array<std::array<const Vec3*, 4>, 4>;
 
-/// To be called where the registers are that it fills: in what is compiled for each processor.
-inline FourTets gathered(const FourPlaces& tets) {
+/// A part of what calls it, so that it is compiled for the same processor.
+[[gnu::always_inline]] inline FourTets gathered(const FourPlaces& tets) {
     const auto corner = [&](std::size_t k) { return four_of(*tets[0][k], *tets[1][k], *tets[2][k], *tets[3][k]); };
     return {corner(0), corner(1), corner(2), corner(3)};
 }

@@ -48,7 +48,8 @@ std::array<Vertex, 3> ascending(const std::array<Vertex, 4>& v, int corner) {
     return key;
 }
 
-void check_cells(const Mesh& mesh, const Cavity& cavity) {
+/// The removed tets in ascending order. Throws if the proposal names what does not exist.
+std::vector<Tet> checked_cells(const Mesh& mesh, const Cavity& cavity) {
     auto removed = cavity.removed;
     std::ranges::sort(removed);
     const bool twice = std::ranges::adjacent_find(removed) != removed.end();
@@ -65,14 +66,17 @@ void check_cells(const Mesh& mesh, const Cavity& cavity) {
     for (const NewTet& tet : cavity.added)
         if (!std::ranges::all_of(tet.vertices, exists))
             throw std::logic_error("replace_cells: an added cell has a vertex that does not exist");
+    return removed;
 }
 
-std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity) {
+/// Of the removed tets only the facets around the cavity; those inside it may come and go.
+std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity, std::span<const Tet> removed) {
     std::vector<Side> sides;
     sides.reserve(4 * (cavity.removed.size() + cavity.added.size()));
     for (int corner = 0; corner < 4; ++corner) {
         for (std::size_t i = 0; i < cavity.removed.size(); ++i)
-            sides.emplace_back(ascending(mesh.tets[cavity.removed[i]], corner), false, i, corner);
+            if (!std::ranges::binary_search(removed, mesh.neighbour[cavity.removed[i]][at(corner)]))
+                sides.emplace_back(ascending(mesh.tets[cavity.removed[i]], corner), false, i, corner);
         for (std::size_t i = 0; i < cavity.added.size(); ++i)
             sides.emplace_back(ascending(cavity.added[i].vertices, corner), true, i, corner);
     }
@@ -94,11 +98,11 @@ std::vector<Tet> slots(const Mesh& mesh, const Cavity& cavity) {
     return names;
 }
 
-/// Joins the sides of one facet. Before, the facet was inside the cavity (two removed sides), around it (one)
-/// or new (none); after, it is inside (two added sides), around it (one) or gone (none).
+/// Joins the sides of one facet. Before, the facet was around the cavity (one removed side), or inside it or not
+/// there (none); after, it is inside (two added sides), around it (one) or gone (none).
 void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> before,
                 std::span<const Side> after, std::span<const Tet> names, std::vector<Join>& joins) {
-    if (before.size() > 2 || after.size() > 2 || (before.size() == 1 && after.size() == 2))
+    if (before.size() > 1 || after.size() > 2 || (before.size() == 1 && after.size() == 2))
         throw std::logic_error("replace_cells: a facet of the cavity is used too often");
     const auto outer = [&](const Side& s) { return Facet{cavity.removed[s.which()], s.corner()}; };
     if (after.size() == 2) {
@@ -121,8 +125,9 @@ void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> be
     }
 }
 
-std::vector<Join> join_facets(const Mesh& mesh, const Cavity& cavity, std::span<const Tet> names) {
-    const auto sides = sides_by_key(mesh, cavity);
+std::vector<Join> join_facets(const Mesh& mesh, const Cavity& cavity, std::span<const Tet> removed,
+                              std::span<const Tet> names) {
+    const auto sides = sides_by_key(mesh, cavity, removed);
     std::vector<Join> joins;
     joins.reserve(4 * cavity.added.size());
     for (auto begin = sides.begin(); begin != sides.end();) {
@@ -197,9 +202,9 @@ Vertex next_vertex(const Mesh& mesh, std::size_t k) {
 }
 
 std::vector<Tet> replace_cells(Mesh& mesh, const Cavity& cavity) {
-    check_cells(mesh, cavity);
+    const auto removed = checked_cells(mesh, cavity);
     const auto names = slots(mesh, cavity);
-    const auto joins = join_facets(mesh, cavity, names);
+    const auto joins = join_facets(mesh, cavity, removed, names);
 
     std::vector<Vertex> touched;
     clear_removed(mesh, cavity, touched);

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "mesh/cells.h"
-#include "mesh/index_set.h"
 
 #include <algorithm>
 #include <numeric>
@@ -168,9 +167,10 @@ Compacted reorder(const Mesh& mesh, Array<Vertex, Vertex> old_vertex, Array<Tet,
 namespace {
 
 bool has_slot(const Mesh& mesh, Tet t) { return static_cast<std::size_t>(t.value) < mesh.tets.size(); }
+bool has_slot(const Mesh& mesh, Vertex v) { return static_cast<std::size_t>(v.value) < mesh.position.size(); }
 
 void copy_vertex(Mesh& to, const Mesh& from, Vertex v) {
-    if (static_cast<std::size_t>(v.value) >= from.position.size()) return;
+    if (!has_slot(from, v)) return;
     to.position[v] = from.position[v];
     to.tet_at[v] = from.tet_at[v];
     to.layer_at[v] = from.layer_at[v];
@@ -186,19 +186,9 @@ void copy_tet(Mesh& to, const Mesh& from, Tet t) {
 }  // namespace
 
 void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::span<const Vertex> vertices) {
-    IndexSet<Vertex> different;
-    for (Vertex v : vertices) different.insert(v);
-    for (const Mesh* mesh : std::initializer_list<const Mesh*>{&to, &from})
-        for (Tet t : tets)
-            if (has_slot(*mesh, t) && alive(*mesh, t))
-                for (Vertex v : mesh->tets[t]) different.insert(v);
-    IndexSet<Tet> different_tets;  // their neighbours know them
-    for (Tet t : tets) {
-        if (!has_slot(from, t)) continue;
-        different_tets.insert(t);
-        for (Tet n : from.neighbour[t])
-            if (n.exists()) different_tets.insert(n);
-    }
+    for (Tet t : tets)  // vertices that may have lost their last cell
+        if (has_slot(to, t) && alive(to, t))
+            for (Vertex v : to.tets[t]) copy_vertex(to, from, v);
     to.position.resize(from.position.size());
     to.tet_at.resize(from.tet_at.size());
     to.layer_at.resize(from.layer_at.size());
@@ -206,8 +196,16 @@ void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::sp
     to.neighbour.resize(from.tets.size());
     to.patch.resize(from.tets.size());
     to.region.resize(from.tets.size());
-    different.for_each([&](Vertex v) { copy_vertex(to, from, v); });
-    different_tets.for_each([&](Tet t) { copy_tet(to, from, t); });
+    for (Tet t : tets) {
+        if (!has_slot(from, t)) continue;
+        copy_tet(to, from, t);
+        if (!alive(from, t)) continue;
+        for (Vertex v : from.tets[t]) copy_vertex(to, from, v);
+        for (Tet n : from.neighbour[t])
+            if (n.exists()) to.neighbour[n] = from.neighbour[n];
+    }
+    for (Vertex v : vertices)
+        if (has_slot(from, v)) to.position[v] = from.position[v];
     to.free_tets = from.free_tets;
     to.free_vertices = from.free_vertices;
 }

@@ -180,8 +180,9 @@ TEST(Zone, FollowsAMeshWhoseCellsAreReplaced) {
             const auto part = random_part(mesh, 0.3, random);
             Changes changes = adapt_to_size(mesh, part, at_time);
             changes += improve(mesh, changes.cells, at_time);
-            std::vector<Tet> replaced = changes.cells;
-            replaced.insert(replaced.end(), changes.removed.begin(), changes.removed.end());
+            IndexSet<Tet> replaced;
+            for (Tet t : changes.cells) replaced.insert(t);
+            for (Tet t : changes.removed) replaced.insert(t);
             follow(zone, mesh, replaced);
             expect_as_fresh(zone, mesh);
             splits += changes.splits;
