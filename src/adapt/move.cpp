@@ -20,6 +20,7 @@ namespace kropla {
 namespace {
 
 constexpr double reach_in_body_sizes = 6.0;    // how far a displacement is felt
+constexpr double most_reach = 10.0;             // in a narrow box, where that is no more work
 constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
 
 constexpr std::size_t too_much = 2;  // of a zone, in what is in reach: then the rest is left out
@@ -39,12 +40,31 @@ struct Travel {
     }
 };
 
+/// The volume of the part of the box within `reach` of a point, by axes [m^3].
+double volume_within(const Box& box, const Vec3& x, double reach) {
+    double volume = 1;
+    for (int axis = 0; axis < 3; ++axis)
+        volume *= std::max(0.0, std::min(x[axis] + reach, box.max[axis]) - std::max(x[axis] - reach, box.min[axis]));
+    return volume;
+}
+
+/// How far a body's displacement is felt. The farther, the less each cell is strained; so where walls cut away a part
+/// of what is in reach, it goes farther, to about as many cells.
+double reach_of(const Shape& shape, const Domain& domain) {
+    constexpr double step = 0.25;
+    const double size = std::max({shape.semi_axes.x, shape.semi_axes.y, shape.semi_axes.z});
+    const double whole = std::pow(2 * (1 + reach_in_body_sizes) * size, 3);
+    double sizes = reach_in_body_sizes;
+    while (sizes < most_reach && volume_within(domain.box, shape.centre, (1 + sizes + step) * size) <= whole) sizes += step;
+    return std::max(sizes * size, least_reach_in_sizes * domain.size.surface);
+}
+
 std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
     std::vector<Travel> result;
     for (const Body& body : domain.bodies) {
         const Shape from = shape_at(body, t0);
         const double size = std::max({from.semi_axes.x, from.semi_axes.y, from.semi_axes.z});
-        const double reach = std::max(reach_in_body_sizes * size, least_reach_in_sizes * domain.size.surface);
+        const double reach = reach_of(from, domain);
         result.push_back({from, shape_at(body, t1), reach, reach + size});
     }
     return result;
