@@ -99,6 +99,7 @@ struct AdaptOptions {
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
     double split_above = 1.58;        // [target sizes] longer edges are split
     double collapse_below = 0.63;     // [target sizes] shorter edges are collapsed
+    bool clusters = true;             // what nothing else helps is re-triangulated with the ring around it
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung
     std::uint64_t seed = 1;           // of the new points of a cluster
@@ -129,6 +130,9 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 /// fall.
 [[nodiscard]] std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> cluster, const Snapshot& at,
                                                    const AdaptOptions& options = {});
+
+/// The cells and one more ring of cells of their region, that of the first.
+[[nodiscard]] std::vector<Tet> with_ring(const Mesh& mesh, const std::vector<Tet>& cells);
 
 /// The repair ladder (paper 1.2-1.3): what `improve` leaves above the floor is cut out and re-triangulated,
 /// with one more ring of cells each time, at last with the whole region.

@@ -308,6 +308,21 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
     return stuck;
 }
 
+/// Re-triangulates small clusters around cells that nothing else has helped.
+void retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at_time, const AdaptOptions& options,
+                   Changes& changes) {
+    for (Tet t : stuck) {
+        if (!alive(mesh, t)) continue;
+        const double ratio = aspect_ratio(mesh, t);
+        if (ratio <= options.good_enough) continue;
+        const auto cavity = cluster_remesh(mesh, with_ring(mesh, {t}), at_time, options);
+        if (!cavity || cavity->worst_after > bound({ratio, t})) continue;
+        carry_out(mesh, *cavity, changes);
+        ++changes.local_remeshes;
+        changes.largest_ring = std::max(changes.largest_ring, 1);
+    }
+}
+
 }  // namespace
 
 Changes& Changes::operator+=(const Changes& other) {
@@ -379,6 +394,7 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time,
         left = treat(mesh, std::move(bad), at_time, options, changed, changes);
         if (changes.cells.size() + changes.vertices.size() == before) break;
     }
+    if (options.clusters) retriangulate(mesh, left, at_time, options, changes);
     const std::vector<Tet> added(changes.cells.begin() + swapped, changes.cells.end());
     changes += swap_for_energy(mesh, added, options);
     return changes;

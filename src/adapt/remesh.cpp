@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "generate/generate.h"
 #include "generate/sampling.h"
+#include "mesh/index_set.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
@@ -32,17 +33,15 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// A set of tets with quick membership, in a fixed order.
 struct Cluster {
     std::vector<Tet> cells;
-    std::vector<char> has;  // per tet slot
+    IndexSet<Tet> has;
 
-    Cluster(const Mesh& mesh, std::vector<Tet> tets) : has(mesh.tets.size(), 0) {
+    explicit Cluster(std::span<const Tet> tets) {
         for (Tet t : tets) add(t);
     }
     void add(Tet t) {
-        if (contains(t)) return;
-        has[at(t.value)] = 1;
-        cells.push_back(t);
+        if (has.insert(t)) cells.push_back(t);
     }
-    [[nodiscard]] bool contains(Tet t) const { return has[at(t.value)] != 0; }
+    [[nodiscard]] bool contains(Tet t) const { return has.contains(t); }
 };
 
 /// The cluster as a problem of its own, by numbers of its own for the vertices of its boundary.
@@ -233,7 +232,9 @@ Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& 
     Mesh mesh = make_mesh(std::move(position), std::move(tets), std::move(region), boundary);
     std::vector<Tet> cells;
     for (Tet t : mesh.tets.indices()) cells.push_back(t);
-    improve(mesh, cells, at_time, options);
+    AdaptOptions within = options;
+    within.clusters = false;
+    improve(mesh, cells, at_time, within);
     return mesh;
 }
 
@@ -271,7 +272,7 @@ Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, con
 
 std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, const Snapshot& at_time,
                                      const AdaptOptions& options) {
-    Cluster cluster(mesh, std::move(tets));
+    Cluster cluster(tets);
     Random random{options.seed};
     for (int growth = 0; growth < most_growths; ++growth) {
         Hole hole = boundary_of(mesh, cluster);
@@ -289,11 +290,8 @@ std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, co
     return std::nullopt;
 }
 
-namespace {
-
-/// The cluster and one more ring of cells of its region.
 std::vector<Tet> with_ring(const Mesh& mesh, const std::vector<Tet>& cells) {
-    Cluster cluster(mesh, cells);
+    Cluster cluster(cells);
     std::vector<Tet> around;
     for (Tet t : cells)
         for (Vertex v : mesh.tets[t]) {
@@ -303,6 +301,8 @@ std::vector<Tet> with_ring(const Mesh& mesh, const std::vector<Tet>& cells) {
         }
     return cluster.cells;
 }
+
+namespace {
 
 std::vector<Tet> whole_region(const Mesh& mesh, Region region) {
     std::vector<Tet> cells;

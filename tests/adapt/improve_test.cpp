@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace kropla {
 namespace {
 
@@ -22,7 +24,7 @@ TEST(Improve, NeverRaisesTheWorstAndUsesAllOperators) {
         const Mesh before = mesh;
         const double worst = worst_of(mesh);
         ASSERT_GT(worst, 10);
-        const Changes changes = improve(mesh, all_tets(mesh), unit_cube);
+        const Changes changes = improve(mesh, all_tets(mesh), unit_cube, {.clusters = false});
         EXPECT_LT(worst_of(mesh), worst);
         EXPECT_EQ(verify(mesh), "");
         EXPECT_TRUE(same_shape(properties(mesh), properties(before)));
@@ -49,6 +51,33 @@ TEST(Improve, NeverRaisesTheWorstOfAnyPart) {
         ASSERT_LE(now, worst * (1 + 1e-12));
         worst = now;
     }
+}
+
+int count_bad(const Mesh& mesh) {
+    const auto is_bad = [&](Tet t) { return aspect_ratio(mesh, t) > AdaptOptions{}.good_enough; };
+    return static_cast<int>(std::ranges::count_if(all_tets(mesh), is_bad));
+}
+
+TEST(Improve, RetriangulatesClustersWhereNothingElseHelps) {
+    int left = 0, left_with_clusters = 0, clusters = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Mesh mesh = improved_mesh(sphere_in_box(), seed);
+        spoil(mesh, surroundings, 60, seed);
+        const Mesh before = mesh;
+        Mesh other = mesh;
+        const Snapshot at_time = snapshot(sphere_in_box(), 0);
+        EXPECT_EQ(improve(other, all_tets(other), at_time, {.clusters = false}).local_remeshes, 0);
+        const Changes changes = improve(mesh, all_tets(mesh), at_time);
+        clusters += changes.local_remeshes;
+        EXPECT_EQ(verify(mesh), "");
+        EXPECT_TRUE(same_shape(properties(mesh), properties(before)));
+        EXPECT_LE(worst_of(mesh), worst_of(other) * (1 + 1e-12));
+        left += count_bad(other);
+        left_with_clusters += count_bad(mesh);
+    }
+    EXPECT_GE(clusters, 1);
+    EXPECT_LT(left_with_clusters, left);
 }
 
 TEST(Improve, LeavesGoodCellsAndNamesTheChangedVertices) {
