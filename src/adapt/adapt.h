@@ -97,8 +97,8 @@ struct AdaptOptions {
     double good_enough = 5.0;         // [-] R/r: worse cells are optimised by all means
     double passing = 50.0;            // [-] R/r: cells of the wrong size may become as bad, to be improved at once
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
-    double split_above = 1.58;        // [target sizes] longer edges are split
-    double collapse_below = 0.63;     // [target sizes] shorter edges are collapsed
+    double split_above = 1.59;        // [target sizes] longer edges are split
+    double collapse_below = 0.625;    // [target sizes] shorter edges are collapsed
     bool clusters = true;             // what nothing else helps is re-triangulated with the ring around it
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung

@@ -17,6 +17,7 @@ constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is
 constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
 constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
+constexpr int rings_of_trouble = 2;          // around such a cell, at most
 constexpr double harder = 0.92;          // there, cells must be better by this than elsewhere
 
 /// The vertices of a body's tets and of its layers' columns, in order.
@@ -95,6 +96,7 @@ const Changes& MovingMesh::refine() {
     changes += improve(current_, cells, at_time, options);
     if (trouble_.size() > 1) {  // it was not enough the last time
         options.floor = std::min(options_.floor, trouble_floor);
+        options.largest_ring = std::min(options_.largest_ring, rings_of_trouble);
         options.whole_region = false;
         changes += repair(current_, cells_near(current_, trouble_, at_time), at_time, options);
     }
