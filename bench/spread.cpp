@@ -29,7 +29,6 @@ constexpr double limit = 10;          // of R/r
 constexpr double end = 0.01;          // [s]
 constexpr int case_steps = 50;
 constexpr double tolerance = 1e-6;    // of the residual, to that at the start
-constexpr double least_volume_kept = 0.05;  // as of move_boundary
 constexpr int report_every = 5;       // steps
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -185,7 +184,7 @@ bool step(Way way, Mesh& mesh, const Domain& domain, double t0, double t1, Zone&
     if (way == Way::ours ? !arrived : !check_way(zone, mesh, mesh.position, least_volume_kept).arrived) return false;
     const double checked = cpu_seconds();
     find_sizes(zone, snapshot(domain, t1));
-    optimise_places(zone, mesh, AdaptOptions{});
+    if (!optimise_places(zone, mesh, AdaptOptions{})) return false;
     outcome.spread_seconds += spread - begin;
     outcome.optimise_seconds += cpu_seconds() - checked;
     write_places(zone, mesh);

@@ -59,8 +59,8 @@ bool optimise_vertex(Mesh& mesh, Vertex v, double good_enough);
 
 // --- Proposals: swapping, splitting, collapsing, inserting ------------------------------------------------------
 
-/// What a swap is to lower: the worst aspect ratio of the cells it replaces, or, if a limit is given, anything above
-/// that; or their energy, the sum of volume times (R/r)^4 [m^3], which does not depend on the number of cells and is
+/// What a swap is to reach: a worst aspect ratio below that of the cells it replaces, or below `limit` if one is
+/// given; or, by energy, a lower sum of volume times (R/r)^4 [m^3], which does not depend on the number of cells and is
 /// ruled by the bad ones, with no cell worse than `limit` after. `worst_before` and `worst_after` of the proposal are
 /// then energies.
 struct SwapGoal {
@@ -132,7 +132,7 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
                                                    const AdaptOptions& options = {});
 
 /// The cells and one more ring of cells of their region, that of the first.
-[[nodiscard]] std::vector<Tet> with_ring(const Mesh& mesh, const std::vector<Tet>& cells);
+[[nodiscard]] std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells);
 
 /// The repair ladder (paper 1.2-1.3): what `improve` leaves above the floor is cut out and re-triangulated,
 /// with one more ring of cells each time, at last with the whole region.
@@ -140,10 +140,12 @@ Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const
 
 // --- Motion ------------------------------------------------------------------------------------------------------
 
+inline constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
+
 /// The largest fraction in [0, 1] of the displacements up to which all of `cells` keep a volume of at least
 /// `least` of what they have; from the cubic of each cell's volume along its path.
 [[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells,
-                                   const Array<Vertex, Vec3>& displacement, double least = 0.05);
+                                   const Array<Vertex, Vec3>& displacement, double least = least_volume_kept);
 
 struct Zone;  // zone.h
 
@@ -154,8 +156,9 @@ struct MoveReport {
 };
 
 /// Finds where bodies that move rigidly from their places at `t0` to those at `t1` [s] take the vertices of their
-/// surroundings; nothing is moved yet. `bodies` are, per body, the vertices of its cells. `zone` becomes the
-/// surroundings that the displacement reaches.
+/// surroundings; nothing is moved yet. `bodies` are, per body, the vertices of its cells. `zone` is empty or follows
+/// the mesh; it comes to hold the surroundings that the displacement reaches, and may hold more. Vertices that moved
+/// since `begin_motion` still count as moving.
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                     double t1, Zone& zone);
 

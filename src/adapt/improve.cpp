@@ -1,9 +1,9 @@
 // Improvement of the worst cells first: for each, the operators in the order of what they cost the solution
 // (a swap keeps all vertices, smoothing moves one, a collapse loses one, a split adds one), after the
 // schedule of [Klingner, Shewchuk 2007], "Aggressive tetrahedral mesh improvement", here cell by cell, so that
-// work is proportional to the bad cells. What helps is asked for all bad cells at once, by several threads, and
-// carried out the worst first; what has been overtaken by others is asked anew. It ends, as each step lowers
-// the worst aspect ratio of what it replaces.
+// work is proportional to the bad cells. What helps is asked, by several threads, for those at once that share no
+// vertex with a worse one, and carried out the worst first; what has been overtaken by others is asked anew. It
+// ends, as each step lowers the worst aspect ratio of what it replaces.
 
 #include "adapt/propose.h"
 #include "adapt/star.h"
@@ -43,7 +43,9 @@ struct BadCell {
 /// What replaces the cell must be better than this.
 double bound(const BadCell& bad) { return (1 - least_gain) * bad.ratio; }
 
-bool is_worse(const BadCell& a, const BadCell& b) { return a.ratio > b.ratio || (a.ratio == b.ratio && a.cell < b.cell); }
+bool is_worse(const BadCell& a, const BadCell& b) {
+    return std::pair(-a.ratio, a.cell) < std::pair(-b.ratio, b.cell);
+}
 
 /// Adds those of the cells that are bad to the list, which stays in order: the worst first, ties by number. None of
 /// them is there yet.
@@ -153,8 +155,9 @@ void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
     if (other && (!best || other->worst_after < best->worst_after)) best = std::move(other);
 }
 
-/// The best swap that takes one of these edges of the cell away, of which `best` may hold one already.
-void swap_edges(const Mesh& mesh, const BadCell& bad, std::span<const std::size_t> edges, std::optional<Cavity>& best) {
+/// The best swap that takes one of these edges of the cell away.
+std::optional<Cavity> best_swap(const Mesh& mesh, const BadCell& bad, std::span<const std::size_t> edges) {
+    std::optional<Cavity> best;
     Shell around;
     for (std::size_t edge : edges) {
         const auto [i, j] = tet_edges[edge];
@@ -162,20 +165,18 @@ void swap_edges(const Mesh& mesh, const BadCell& bad, std::span<const std::size_
         shell(mesh, e, bad.cell, around);
         keep_better(best, edge_removal(mesh, around, e, {false, best ? best->worst_after : bound(bad)}));
     }
+    return best;
 }
 
 /// By one of the three longest edges: in the default case they make 96 % of the swaps, for a third of the work.
 std::optional<Cavity> Doctor::swap_long_edge(const BadCell& bad) const {
-    std::optional<Cavity> best;
     const auto edges = edges_by_length(mesh, bad.cell);
-    swap_edges(mesh, bad, std::span(edges).first(3), best);
-    return best;
+    return best_swap(mesh, bad, std::span(edges).first(3));
 }
 
 std::optional<Cavity> Doctor::swap_any(const BadCell& bad) const {
-    std::optional<Cavity> best;
     const auto edges = edges_by_length(mesh, bad.cell);
-    swap_edges(mesh, bad, std::span(edges).last(3), best);
+    auto best = best_swap(mesh, bad, std::span(edges).last(3));
     for (int i = 0; i < 4; ++i)
         keep_better(best, face_removal(mesh, {bad.cell, i}, {false, best ? best->worst_after : bound(bad)}));
     return best;
@@ -240,8 +241,7 @@ std::optional<Cavity> Doctor::split(const BadCell& bad) const {
     for (const auto& [i, j] : tet_edges) {
         const Edge e{mesh.tets[bad.cell][at(i)], mesh.tets[bad.cell][at(j)]};
         shell(mesh, e, bad.cell, around);
-        auto cavity = edge_split(mesh, around, e, best ? best->worst_after : bound(bad));
-        if (cavity && (!best || cavity->worst_after < best->worst_after)) best = std::move(cavity);
+        keep_better(best, edge_split(mesh, around, e, best ? best->worst_after : bound(bad)));
     }
     return best;
 }
@@ -315,7 +315,7 @@ void retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at
         if (!alive(mesh, t)) continue;
         const double ratio = aspect_ratio(mesh, t);
         if (ratio <= options.good_enough) continue;
-        const auto cavity = cluster_remesh(mesh, with_ring(mesh, {t}), at_time, options);
+        const auto cavity = cluster_remesh(mesh, with_ring(mesh, {&t, 1}), at_time, options);
         if (!cavity || cavity->worst_after > bound({ratio, t})) continue;
         carry_out(mesh, *cavity, changes);
         ++changes.local_remeshes;

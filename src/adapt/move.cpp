@@ -9,7 +9,6 @@
 #include "adapt/zone.h"
 #include "domain/layer_room.h"
 #include "generate/layers.h"
-#include "mesh/quality.h"
 
 #include <algorithm>
 #include <array>
@@ -54,8 +53,11 @@ double reach_of(const Shape& shape, const Domain& domain) {
     constexpr double step = 0.25;
     const double size = std::max({shape.semi_axes.x, shape.semi_axes.y, shape.semi_axes.z});
     const double whole = std::pow(2 * (1 + reach_in_body_sizes) * size, 3);
+    const auto volume_in_reach = [&](double sizes) {
+        return volume_within(domain.box, shape.centre, (1 + sizes) * size);
+    };
     double sizes = reach_in_body_sizes;
-    while (sizes < most_reach && volume_within(domain.box, shape.centre, (1 + sizes + step) * size) <= whole) sizes += step;
+    while (sizes < most_reach && volume_in_reach(sizes + step) <= whole) sizes += step;
     return std::max(sizes * size, least_reach_in_sizes * domain.size.surface);
 }
 
@@ -215,23 +217,21 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<cons
         if (std::ranges::none_of(body, is_there))
             if (const auto t = tet_beside(mesh, body)) cells.push_back(*t);
     add_cells(zone, mesh, cells);
-    std::vector<Vertex> front;
-    zone.has.for_each([&](Vertex v) { front.push_back(v); });
+    auto front = zone.has.list();
     std::vector<Tet> around;
     while (!front.empty()) {
         cells.clear();
         for (Vertex v : front) {
-            if ((zone.axes[v] & Zone::rim) == 0 || !alive(mesh, v) || out_of_reach(travels, mesh.position[v])) continue;
+            if ((zone.axes[v] & Zone::rim) == 0 || out_of_reach(travels, mesh.position[v])) continue;
             ball(mesh, v, around);
             for (Tet t : around)
                 if (mesh.region[t] == surroundings && !zone.holds.contains(t)) cells.push_back(t);
         }
         add_cells(zone, mesh, cells);
-        front.clear();
-        for (Tet t : cells) front.insert(front.end(), mesh.tets[t].begin(), mesh.tets[t].end());
-        std::ranges::sort(front);
-        const auto repeated = std::ranges::unique(front);
-        front.erase(repeated.begin(), repeated.end());
+        IndexSet<Vertex> next;
+        for (Tet t : cells)
+            for (Vertex v : mesh.tets[t]) next.insert(v);
+        front = next.list();
     }
 }
 
@@ -240,7 +240,7 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
                     std::span<const std::vector<Vertex>> bodies, Zone& zone) {
     reach_out(mesh, travels, bodies, zone);
     place_bodies(mesh, at_end, travels, bodies, zone);
-    list_vertices(zone, mesh);
+    zone.vertices = zone.has.list();
     for_all(zone.vertices.size(), [&](std::size_t i) {
         const Vertex v = zone.vertices[i];
         if (zone.moves[v] == Zone::with_body) return;
@@ -250,7 +250,14 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
         zone.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, v));
     });
     list_cells(zone, mesh);
-    if (zone.holds.size() > too_much * zone.cells.size()) shrink(zone, mesh);
+    if (zone.holds.size() <= too_much * zone.cells.size()) return;
+    shrink(zone, mesh);
+    zone.vertices = zone.has.list();
+}
+
+/// The length of the longest row.
+[[gnu::always_inline]] inline Four longest(const std::array<FourVec3, 3>& rows) {
+    return square_root(greater(greater(squared_norm(rows[0]), squared_norm(rows[1])), squared_norm(rows[2])));
 }
 
 /// Which of four cells keep `least` of their volume on the way without doubt, told by their sizes: a determinant
@@ -262,9 +269,6 @@ void tell_safe(const FourPlaces& from, const FourPlaces& to, double least, std::
     const std::array<FourVec3, 3> e = {start.b - start.a, start.c - start.a, start.d - start.a};
     const FourVec3 da = end.a - start.a;
     const std::array<FourVec3, 3> de = {end.b - start.b - da, end.c - start.c - da, end.d - start.d - da};
-    const auto longest = [](const std::array<FourVec3, 3>& rows) {
-        return square_root(greater(greater(squared_norm(rows[0]), squared_norm(rows[1])), squared_norm(rows[2])));
-    };
     const Four l = longest(e), d = longest(de);
     const Four surplus = (1 - least) * determinant(e[0], e[1], e[2]) - d * (3 * l * (l + d) + d * d);
     for (std::size_t i = 0; i < 4; ++i) safe[i] = surplus[i] > 0;
@@ -296,13 +300,11 @@ MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec
 
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                     double t1, Zone& zone) {
-    fit(zone, mesh);
     gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
 }
 
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                          double t1, Zone& zone) {
-    constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
     place_boundary(mesh, domain, bodies, t0, t1, zone);
     const MoveReport report = check_way(zone, mesh, mesh.position, least_volume_kept);
     if (report.arrived) write_places(zone, mesh);

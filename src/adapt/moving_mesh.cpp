@@ -1,10 +1,10 @@
 #include "adapt/moving_mesh.h"
 
-#include "adapt/for_all.h"
 #include "generate/layers.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace kropla {
@@ -14,7 +14,6 @@ constexpr int most_legs = 8;             // into which the motion of a step is c
 constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
-constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
 constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
 constexpr int rings_of_trouble = 2;          // around such a cell, at most
@@ -124,24 +123,33 @@ void MovingMesh::optimise() {
 void MovingMesh::move_in_legs() {
     copy_changed(current_, before_, {}, moved_);
     double here = time_;
-    for (statistics_.legs = 1; statistics_.legs <= most_legs; ++statistics_.legs) {
+    for (int leg = 1; leg <= most_legs; ++leg) {
+        statistics_.legs = leg;
         const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, target_time_, zone_);
-        const double leg = report.arrived ? 1 : share_of_safe * report.fraction;
-        const double next = report.arrived ? target_time_ : here + leg * (target_time_ - here);
-        stuck_ = Refusal{"vertices cannot be moved without turning a cell over", Tet{}, here - time_};
+        const double share = report.arrived ? 1 : share_of_safe * report.fraction;
+        const double next = report.arrived ? target_time_ : here + share * (target_time_ - here);
         if (!report.arrived) {
-            stuck_->why = describe(current_, report.limiting, "keeps the bodies from arriving");
-            stuck_->limiting = report.limiting;
-            if (leg < least_leg || !kropla::move_boundary(current_, domain_, bodies_, here, next, zone_).arrived) return;
+            stuck_ = Refusal{describe(current_, report.limiting, "keeps the bodies from arriving"), report.limiting,
+                             here - time_};
+            if (share < least_leg) return;
+            if (!kropla::move_boundary(current_, domain_, bodies_, here, next, zone_).arrived) return;
         }
         note_moved();
-        if (!optimise_at(next)) return;
+        if (!optimise_at(next)) return note_turned_over(here);
         here = next;
         if (!report.arrived) continue;
         stuck_.reset();
         way_ = check_way(zone_, current_, before_.position, least_volume_kept);
         return;
     }
+}
+
+/// The places that were moved have a cell that is turned over.
+void MovingMesh::note_turned_over(double reached) {
+    const auto is_turned = [&](Tet t) { return !std::isfinite(zone_.ratio[t]); };
+    const auto cell = std::ranges::find_if(zone_.cells, is_turned);
+    const Tet limiting = cell == zone_.cells.end() ? zone_.cells.front() : *cell;
+    stuck_ = Refusal{describe(current_, limiting, "would be turned over"), limiting, reached - time_};
 }
 
 /// Returns false if a cell is turned over.

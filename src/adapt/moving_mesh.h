@@ -67,6 +67,7 @@ private:
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
     Changes remesh(const AdaptOptions& options);  // the reference
     void move_in_legs();
+    void note_turned_over(double reached);
     bool optimise_at(double t);
     [[nodiscard]] std::vector<Tet> cells_above(double ratio) const;
     void note_moved();
@@ -82,8 +83,8 @@ private:
     std::vector<Tet> refined_;       // cells that are new in the step
     IndexSet<Tet> replaced_;         // in which slots the three meshes may differ,
     std::vector<Vertex> moved_;      // and which vertices may have other places
-    std::vector<Vec3> trouble_;     // where the attempts refused since the last accepted step got stuck
-    std::optional<Refusal> stuck_;  // the motion did not arrive
+    std::vector<Vec3> trouble_;      // where the attempts refused since the last accepted step got stuck
+    std::optional<Refusal> stuck_;   // the motion did not arrive
     StepStatistics statistics_;
 };
 

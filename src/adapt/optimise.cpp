@@ -16,13 +16,12 @@
 #include <atomic>
 #include <cmath>
 #include <span>
-#include <unordered_set>
 
 namespace kropla {
 namespace {
 
-constexpr int most_retreats = 5;       // vertices that are taken back may spoil the cells of others
-constexpr int most_passes = 4;         // over the vertices of bad cells
+constexpr int most_retreats = 5;        // vertices that are taken back may spoil the cells of others
+constexpr int most_passes = 4;          // over the vertices of bad cells
 constexpr double near_the_floor = 0.8;  // of it: cells above are put right by moving vertices
 
 /// Returns whether all cells had a volume; else nothing is moved.
@@ -54,15 +53,12 @@ bool equalise_volumes(Zone& zone, const Mesh& mesh) {
 
 /// The vertices of cells worse than `above` that may move, each once, in order.
 std::vector<Vertex> vertices_of_worse(const Zone& zone, const Mesh& mesh, double above) {
-    std::vector<Vertex> vertices;
+    IndexSet<Vertex> vertices;
     for (Tet t : zone.cells)
         if (zone.ratio[t] > above)
             for (Vertex v : mesh.tets[t])
-                if (!freedom(zone, v).none()) vertices.push_back(v);
-    std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
-    return vertices;
+                if (!freedom(zone, v).none()) vertices.insert(v);
+    return vertices.list();
 }
 
 void measure_ball(Zone& zone, const Mesh& mesh, Vertex v) {
@@ -87,13 +83,13 @@ bool retreat(Zone& zone, const Mesh& mesh, const std::vector<Vec3>& places, doub
 /// Takes those of `vertices` out, in order, that share no cell with each other.
 std::vector<Vertex> take_apart(const Zone& zone, std::vector<Vertex>& vertices) {
     std::vector<Vertex> apart, rest;
-    std::unordered_set<int> cells;
+    IndexSet<Tet> cells;
     for (Vertex v : vertices) {
         const auto& ball = zone.ball[v];
-        const bool is_near = std::ranges::any_of(ball, [&](Tet t) { return cells.contains(t.value); });
+        const bool is_near = std::ranges::any_of(ball, [&](Tet t) { return cells.contains(t); });
         (is_near ? rest : apart).push_back(v);
         if (!is_near)
-            for (Tet t : ball) cells.insert(t.value);
+            for (Tet t : ball) cells.insert(t);
     }
     vertices = std::move(rest);
     return apart;

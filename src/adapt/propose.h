@@ -11,7 +11,7 @@
 
 namespace kropla {
 
-/// What is proposed, and for the how manieth it was asked.
+/// What is proposed, and the number for which it was asked.
 template <class What>
 struct Proposal {
     std::size_t asked;

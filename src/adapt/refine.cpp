@@ -9,6 +9,7 @@
 #include "mesh/quality.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -145,7 +146,9 @@ void tell_wrong(const FourPlaces& places, const std::array<Four, 4>& sizes, Boun
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = i + 1; j < 4; ++j) {
             const Four size = (sizes[i] + sizes[j]) / 2, square = squared_norm(x[i] - x[j]);
-            beyond = greater(beyond, greater(square - bounds.longest * (size * size), bounds.shortest * (size * size) - square));
+            const Four too_long = square - bounds.longest * (size * size);
+            const Four too_short = bounds.shortest * (size * size) - square;
+            beyond = greater(beyond, greater(too_long, too_short));
         }
     for (std::size_t i = 0; i < 4; ++i) wrong[i] = beyond[i] > 0;
 }
@@ -154,7 +157,8 @@ void find_wrong_edges(const Mesh& mesh, const Zone& zone, Tet t, Bounds bounds, 
     for (const auto& [i, j] : tet_edges) {
         const Vertex a = mesh.tets[t][at(i)], b = mesh.tets[t][at(j)];
         const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
-        if (!bounds.hold(square, size)) wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});
+        if (bounds.hold(square, size)) continue;
+        wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});
     }
 }
 
@@ -179,7 +183,8 @@ std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const Zone& zone, const Ada
     std::vector<std::vector<WrongEdge>> parts((zone.cells.size() + at_once - 1) / at_once);
     for_all(parts.size(), [&](std::size_t part) {
         const std::size_t end = std::min(zone.cells.size(), at_once * (part + 1));
-        for (std::size_t i = at_once * part; i < end; i += 4) find_wrong_edges_of_four(mesh, zone, i, bounds, parts[part]);
+        for (std::size_t i = at_once * part; i < end; i += 4)
+            find_wrong_edges_of_four(mesh, zone, i, bounds, parts[part]);
     }, 1);
     std::vector<WrongEdge> wrong;
     for (const auto& part : parts) wrong.insert(wrong.end(), part.begin(), part.end());
@@ -204,9 +209,10 @@ std::optional<Tet> cell_at(const Mesh& mesh, const WrongEdge& wrong) {
     return found == around.end() ? std::nullopt : std::optional(*found);
 }
 
-/// The ball of a vertex while the mesh still has the cells of the zone, which knows most balls.
+/// The ball of a vertex while the mesh still has the cells of the zone, of which the balls of vertices that move are
+/// known.
 void ball_at_start(const Mesh& mesh, const Zone& zone, Vertex v, std::vector<Tet>& tets) {
-    if (zone.has.contains(v) && (zone.axes[v] & Zone::all_axes) != 0) tets = zone.ball[v];
+    if (zone.has.contains(v) && !freedom(zone, v).none()) tets = zone.ball[v];
     else ball(mesh, v, tets);
 }
 

@@ -290,7 +290,7 @@ std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, co
     return std::nullopt;
 }
 
-std::vector<Tet> with_ring(const Mesh& mesh, const std::vector<Tet>& cells) {
+std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells) {
     Cluster cluster(cells);
     std::vector<Tet> around;
     for (Tet t : cells)

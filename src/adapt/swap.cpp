@@ -31,9 +31,8 @@ struct Measure {
     [[nodiscard]] double together(double a, double b) const { return goal.by_energy ? a + b : std::max(a, b); }
     /// Of up to four cells at once.
     [[nodiscard]] Four of_each(std::span<const Corners> tets) const {
-        constexpr std::size_t one = 1;
-        const std::size_t last = tets.size() - 1;
-        const auto four = FourPlaces{tets[0], tets[std::min(last, one)], tets[std::min(last, 2 * one)], tets[last]};
+        const auto which = [&](std::size_t i) { return tets[std::min(i, tets.size() - 1)]; };
+        const FourPlaces four = {which(0), which(1), which(2), which(3)};
         Four ratios, energies;
         if (goal.by_energy) tet_aspect_ratios(four, ratios, energies);
         else tet_aspect_ratios(four, ratios);

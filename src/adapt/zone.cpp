@@ -11,6 +11,22 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// Makes room for what the mesh has.
+void fit(Zone& zone, const Mesh& mesh) {
+    const std::size_t vertices = mesh.position.size(), tets = mesh.tets.size();
+    if (zone.ball.size() < vertices) {
+        zone.ball.resize(vertices);
+        zone.axes.resize(vertices, 0);
+        zone.moves.resize(vertices, 0);
+        zone.place.resize(vertices);
+        zone.size.resize(vertices, 0);
+    }
+    if (zone.ratio.size() < tets) {
+        zone.ratio.resize(tets, 0);
+        zone.pull.resize(tets);
+    }
+}
+
 /// What the facet opposite the corner lets its vertices do: the axes along which they may slide, or `rim`.
 unsigned char axes_at(const Zone& zone, const Mesh& mesh, Tet t, int corner) {
     const Tet n = mesh.neighbour[t][at(corner)];
@@ -34,26 +50,20 @@ unsigned char axes_of(const Zone& zone, const Mesh& mesh, Vertex v) {
     return axes | rim;
 }
 
-void make_unique(std::vector<Vertex>& vertices) {
-    std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
-}
-
-void insert(Zone& zone, const Mesh& mesh, Tet t, std::vector<Vertex>& touched) {
+void insert(Zone& zone, const Mesh& mesh, Tet t, IndexSet<Vertex>& touched) {
     if (!zone.holds.insert(t)) return;
     for (Vertex v : mesh.tets[t]) {
         zone.has.insert(v);
         zone.ball[v].push_back(t);
-        touched.push_back(v);
+        touched.insert(v);
     }
 }
 
-/// Puts the balls of vertices in order, whose cells have changed.
-void settle(Zone& zone, const Mesh& mesh, std::vector<Vertex>& touched) {
-    make_unique(touched);
-    for_all(touched.size(), [&](std::size_t i) {
-        const Vertex v = touched[i];
+/// Puts the balls of vertices whose cells have changed in order, and asks anew what holds them.
+void settle(Zone& zone, const Mesh& mesh, const IndexSet<Vertex>& touched) {
+    const auto vertices = touched.list();
+    for_all(vertices.size(), [&](std::size_t i) {
+        const Vertex v = vertices[i];
         auto& ball = zone.ball[v];
         std::erase_if(ball, [&](Tet t) { return !zone.holds.contains(t) || corner_of(mesh, t, v) < 0; });
         std::ranges::sort(ball);
@@ -61,30 +71,15 @@ void settle(Zone& zone, const Mesh& mesh, std::vector<Vertex>& touched) {
         ball.erase(twice.begin(), twice.end());
         zone.axes[v] = axes_of(zone, mesh, v);
     }, 32);
-    for (Vertex v : touched)
+    for (Vertex v : vertices)
         if (zone.ball[v].empty()) zone.has.erase(v);
 }
 
 }  // namespace
 
-void fit(Zone& zone, const Mesh& mesh) {
-    const std::size_t vertices = mesh.position.size(), tets = mesh.tets.size();
-    if (zone.ball.size() < vertices) {
-        zone.ball.resize(vertices);
-        zone.axes.resize(vertices, 0);
-        zone.moves.resize(vertices, 0);
-        zone.place.resize(vertices);
-        zone.size.resize(vertices, 0);
-    }
-    if (zone.ratio.size() < tets) {
-        zone.ratio.resize(tets, 0);
-        zone.pull.resize(tets);
-    }
-}
-
 void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
     fit(zone, mesh);
-    std::vector<Vertex> touched;
+    IndexSet<Vertex> touched;
     for (Tet t : cells) insert(zone, mesh, t, touched);
     settle(zone, mesh, touched);
 }
@@ -118,7 +113,7 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
         if (zone.axes[v] != Zone::all_axes) zone.axes[v] = axes_of(zone, mesh, v);
     });
     zone.has.for_each([&](Vertex v) {
-        if (alive(mesh, v) && !zone.ball[v].empty()) return;
+        if (at(v.value) < mesh.position.size() && alive(mesh, v) && !zone.ball[v].empty()) return;
         zone.ball[v].clear();
         zone.has.erase(v);
     });
@@ -127,15 +122,12 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
 void shrink(Zone& zone, const Mesh& mesh) {
     IndexSet<Tet> stay;
     for (Tet t : zone.cells) stay.insert(t);
-    std::vector<Tet> leave;
+    IndexSet<Vertex> touched;
     zone.holds.for_each([&](Tet t) {
-        if (!stay.contains(t)) leave.push_back(t);
-    });
-    std::vector<Vertex> touched;
-    for (Tet t : leave) {
+        if (stay.contains(t)) return;
         zone.holds.erase(t);
-        touched.insert(touched.end(), mesh.tets[t].begin(), mesh.tets[t].end());
-    }
+        for (Vertex v : mesh.tets[t]) touched.insert(v);
+    });
     settle(zone, mesh, touched);
 }
 
@@ -162,19 +154,12 @@ void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
     std::vector<Tet> living;
     std::ranges::copy_if(cells, std::back_inserter(living), [&](Tet t) { return alive(mesh, t); });
     add_cells(zone, mesh, living);
-    list_vertices(zone, mesh);
+    zone.vertices = zone.has.list();
     for (Vertex v : zone.vertices) {
         zone.moves[v] = Zone::by_itself;
         zone.place[v] = mesh.position[v];
     }
     list_cells(zone, mesh);
-}
-
-void list_vertices(Zone& zone, const Mesh& mesh) {
-    zone.vertices.clear();
-    zone.has.for_each([&](Vertex v) {
-        if (alive(mesh, v)) zone.vertices.push_back(v);
-    });
 }
 
 void list_cells(Zone& zone, const Mesh& mesh) {

@@ -14,9 +14,8 @@ struct Pull {
 };
 
 /// A part of the surroundings that is moved as a whole, and what its motion asks for again and again. Nothing in the
-/// mesh changes before `write_places`. To be kept from step to step: it follows a mesh whose cells are replaced by
-/// `follow`, with work in proportion to what was replaced. Arrays have the length of the mesh's and hold something
-/// where the zone is.
+/// mesh changes before `write_places`. To be kept from step to step: `follow` brings it up to date, and looks again
+/// only at what was replaced. Arrays are at least as long as the mesh's and hold something where the zone is.
 struct Zone {
     IndexSet<Tet> holds;
     IndexSet<Vertex> has;                  // the vertices of these cells
@@ -25,7 +24,7 @@ struct Zone {
 
     // Of a step: what moves in it.
     std::vector<Vertex> bodies;            // vertices that move with a body
-    std::vector<Vertex> vertices;          // of the cells, in ascending order
+    std::vector<Vertex> vertices;          // of all cells, in ascending order
     std::vector<Tet> cells;                // with a vertex that moves, in ascending order
     Array<Vertex, unsigned char> moves;    // whether a vertex takes part: 0, by_itself, or with_body
     Array<Vertex, Vec3> place;             // where it is to go [m]
@@ -37,12 +36,11 @@ struct Zone {
     static constexpr unsigned char by_itself = 1, with_body = 2;
 };
 
-/// Makes room for what the mesh has.
-void fit(Zone& zone, const Mesh& mesh);
 /// Takes cells of one region in. Their vertices stay on the faces of the box they lie on; those that have cells out
 /// of the zone, or lie on an interface or another patch, are held.
 void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
 /// The slots of `replaced` have lost their cells or have others, which join the zone if they are of the surroundings.
+/// The mesh may have fewer slots than before.
 void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced);
 /// Leaves out all cells but those listed in `cells`.
 void shrink(Zone& zone, const Mesh& mesh);
@@ -52,7 +50,6 @@ void clear(Zone& zone);
 void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
 /// Nothing moves.
 void begin_motion(Zone& zone);
-void list_vertices(Zone& zone, const Mesh& mesh);
 /// Lists the cells with a vertex that moves.
 void list_cells(Zone& zone, const Mesh& mesh);
 /// Asks for the target sizes where the vertices are to go.
@@ -68,7 +65,7 @@ void star_of_ball(const Zone& zone, const Mesh& mesh, Vertex v, std::vector<Star
 
 /// Moves vertices: `place` and `ratio` change. `size` is set. Returns how many were moved for the worst cells; nothing,
 /// and nothing is moved, if a cell is turned over or flat at `place`.
-std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
+[[nodiscard]] std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
 /// Asks for the aspect ratios of all cells.
 void measure(Zone& zone, const Mesh& mesh);
 /// Do all cells keep a volume of at least `least` of what they have, all the way from `start` to `place`?

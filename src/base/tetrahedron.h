@@ -22,14 +22,16 @@ using FourPlaces = std::array<std::array<const Vec3*, 4>, 4>;
 
 /// A part of what calls it, so that it is compiled for the same processor.
 [[gnu::always_inline]] inline FourTets gathered(const FourPlaces& tets) {
-    const auto corner = [&](std::size_t k) { return four_of(*tets[0][k], *tets[1][k], *tets[2][k], *tets[3][k]); };
+    const auto corner = [&](std::size_t k) {
+        return four_of(*tets[0][k], *tets[1][k], *tets[2][k], *tets[3][k]);
+    };
     return {corner(0), corner(1), corner(2), corner(3)};
 }
 
 /// Their aspect ratios, bit for bit as one by one.
 void tet_aspect_ratios(const FourTets& tets, Four& ratios);
 void tet_aspect_ratios(const FourPlaces& tets, Four& ratios);
-/// The same, and their energies [m^3]: volume times the fourth power of R/r.
+/// The same, and the energies [m^3] of those that are positively oriented: volume times the fourth power of R/r.
 void tet_aspect_ratios(const FourPlaces& tets, Four& ratios, Four& energies);
 
 /// R/r and its gradient with respect to the first vertex [1/m].

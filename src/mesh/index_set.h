@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 namespace kropla {
 
@@ -73,7 +74,7 @@ private:
         return pages_[at];
     }
 
-    std::vector<std::uint32_t> page_at_;  // which of `pages_` holds so many indices; 0: the empty one
+    std::vector<std::uint32_t> page_at_;  // per page of indices: where in `pages_` it is; 0: nowhere, the empty one
     std::vector<Page> pages_ = std::vector<Page>(1);
     std::size_t size_ = 0;
 };

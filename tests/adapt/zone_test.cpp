@@ -140,7 +140,7 @@ TEST(Zone, ListsTheCellsWithAVertexThatMoves) {
     EXPECT_EQ(zone.cells, ball_within(mesh, zone, v));
     shrink(zone, mesh);
     EXPECT_EQ(zone.holds.size(), zone.cells.size());
-    list_vertices(zone, mesh);
+    zone.vertices = zone.has.list();
     Zone fresh;
     gather(fresh, mesh, zone.cells);
     EXPECT_EQ(zone.vertices, fresh.vertices);
@@ -161,6 +161,27 @@ void expect_as_fresh(const Zone& zone, const Mesh& mesh) {
         ASSERT_EQ(zone.ball[v], fresh.ball[v]) << "vertex " << v.value;
         ASSERT_EQ(zone.axes[v], fresh.axes[v]) << "vertex " << v.value;
     }
+}
+
+TEST(Zone, FollowsAMeshThatIsTakenBack) {
+    const Mesh before = sphere_mesh();
+    Mesh mesh = compact(before).mesh;  // no free slots: what is inserted comes at the end
+    const Mesh start = mesh;
+    Zone zone;
+    add_cells(zone, mesh, all_tets(mesh, surroundings));
+    Domain finer = sphere_in_box();
+    finer.size = {0.25, 0, 0.25};
+    const Changes changes = adapt_to_size(mesh, all_tets(mesh, surroundings), snapshot(finer, 0));
+    ASSERT_GT(mesh.position.size(), start.position.size());
+    IndexSet<Tet> replaced;
+    for (Tet t : changes.cells) replaced.insert(t);
+    for (Tet t : changes.removed) replaced.insert(t);
+    follow(zone, mesh, replaced);
+    expect_as_fresh(zone, mesh);
+    follow(zone, start, replaced);
+    expect_as_fresh(zone, start);
+    follow(zone, mesh, replaced);
+    expect_as_fresh(zone, mesh);
 }
 
 TEST(Zone, FollowsAMeshWhoseCellsAreReplaced) {

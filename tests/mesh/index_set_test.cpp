@@ -37,11 +37,40 @@ TEST(IndexSet, HoldsBothEndsOfAWord) {
     EXPECT_EQ(members(set), (std::vector{Tet(0), Tet(63), Tet(64), Tet(127), Tet(128)}));
 }
 
+TEST(IndexSet, HoldsWhatIsFarApartAndForgetsWhatIsErased) {
+    SCOPED_TRACE("seed 6");
+    Random random{6};
+    IndexSet<Tet> set;
+    std::set<Tet> expected;
+    for (int i = 0; i < 3000; ++i) {
+        const Tet t(static_cast<std::int32_t>(random.below(100'000)));
+        set.insert(t);
+        expected.insert(t);
+    }
+    for (int i = 0; i < 30'000; ++i) {
+        const Tet t(static_cast<std::int32_t>(random.below(200'000)));
+        set.erase(t);
+        expected.erase(t);
+    }
+    EXPECT_EQ(set.list(), std::vector(expected.begin(), expected.end()));
+    EXPECT_EQ(set.size(), expected.size());
+    EXPECT_FALSE(set.contains(Tet(10'000'000)));
+    const IndexSet<Tet> copy = set;
+    set.for_each([&](Tet t) {
+        if (t.value % 2 == 0) set.erase(t);
+    });
+    std::erase_if(expected, [](Tet t) { return t.value % 2 == 0; });
+    EXPECT_EQ(set.list(), std::vector(expected.begin(), expected.end()));
+    EXPECT_GT(copy.size(), set.size());
+}
+
 TEST(IndexSet, IsEmptyWhenCleared) {
     IndexSet<Tet> set;
     set.insert(Tet(3));
+    set.insert(Tet(30'000));
     set.clear();
     EXPECT_FALSE(set.contains(Tet(3)));
+    EXPECT_FALSE(set.contains(Tet(30'000)));
     EXPECT_EQ(set.size(), 0u);
     EXPECT_TRUE(members(set).empty());
     EXPECT_TRUE(set.insert(Tet(3)));
