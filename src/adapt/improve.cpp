@@ -20,6 +20,7 @@ constexpr double passable_after_swap = 0.96;    // of good_enough: no swap for t
 constexpr double longest_after_collapse = 2.0;  // [target sizes]
 constexpr double slightly_longer = 1.05;        // an edge may be than another that takes its place
 constexpr int most_swap_rounds = 6;             // of those that others have overtaken
+constexpr double far_from_good = 1.03;          // [good_enough]
 constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -308,19 +309,29 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
     return stuck;
 }
 
-/// Re-triangulates small clusters around cells that nothing else has helped.
-void retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at_time, const AdaptOptions& options,
+/// Re-triangulates the cell with the ring around it; with two, which costs far more, if it is far from good.
+void retriangulate(Mesh& mesh, const BadCell& bad, const Snapshot& at_time, const AdaptOptions& options,
                    Changes& changes) {
-    for (Tet t : stuck) {
-        if (!alive(mesh, t)) continue;
-        const double ratio = aspect_ratio(mesh, t);
-        if (ratio <= options.good_enough) continue;
-        const auto cavity = cluster_remesh(mesh, with_ring(mesh, {&t, 1}), at_time, options);
-        if (!cavity || cavity->worst_after > bound({ratio, t})) continue;
+    std::vector<Tet> cluster = {bad.cell};
+    const int rings = bad.ratio > far_from_good * options.good_enough ? 2 : 1;
+    for (int ring = 1; ring <= rings; ++ring) {
+        cluster = with_ring(mesh, cluster);
+        const auto cavity = cluster_remesh(mesh, cluster, at_time, options);
+        if (!cavity || cavity->worst_after > bound(bad)) continue;
         carry_out(mesh, *cavity, changes);
         ++changes.local_remeshes;
-        changes.largest_ring = std::max(changes.largest_ring, 1);
+        changes.largest_ring = std::max(changes.largest_ring, ring);
+        return;
     }
+}
+
+/// The same for all cells that nothing else has helped.
+void retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at_time, const AdaptOptions& options,
+                   Changes& changes) {
+    for (Tet t : stuck)
+        if (alive(mesh, t))
+            if (const double ratio = aspect_ratio(mesh, t); ratio > options.good_enough)
+                retriangulate(mesh, BadCell{ratio, t}, at_time, options, changes);
 }
 
 }  // namespace
