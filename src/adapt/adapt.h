@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "domain/domain.h"
 #include "mesh/cavity.h"
 #include "mesh/mesh.h"
@@ -103,6 +104,7 @@ struct AdaptOptions {
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung
     std::uint64_t seed = 1;           // of the new points of a cluster
+    const Watch* watch = nullptr;     // may end the work, which throws Interrupted then
 };
 
 /// Swaps away the longest edges of `cells` (and of those that replace them) where that lowers the energy; where

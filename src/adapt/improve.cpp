@@ -281,6 +281,7 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
                        IndexSet<Tet>& changed, Changes& changes) {
     std::vector<Tet> stuck;
     while (!bad.empty()) {
+        heed(options.watch);
         const auto asked = take_apart(mesh, bad);
         const Doctor doctor{mesh, at_time, options, changed};
         const Vertex next = next_vertex(mesh);

@@ -19,4 +19,7 @@ struct SolverError : std::runtime_error { using runtime_error::runtime_error; };
 /// The mesh cannot keep its floors, whatever was tried. The message names the cell, the place and the time.
 struct FloorError : std::runtime_error { using runtime_error::runtime_error; };
 
+/// Whoever follows the computation has asked it to end (base/watch.h). What was under way is dropped.
+struct Interrupted : std::runtime_error { using runtime_error::runtime_error; };
+
 }  // namespace kropla

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "domain/domain.h"
 #include "mesh/mesh.h"
 
@@ -43,8 +44,9 @@ struct PointSet {
 /// faces of the box as patches, and the prism layers that bodies have: a body's outside before its inside,
 /// tets ending at walls and shells. Where a triangle of a surface is not a facet, points that stand in its
 /// way are removed and surface points are added until it is.
-/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform.
-[[nodiscard]] Mesh generate_mesh(const Domain& domain, std::uint64_t seed);
+/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform; Interrupted if the
+/// watch says so.
+[[nodiscard]] Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch = nullptr);
 
 /// The mesh without free slots, its vertices and cells numbered along a Hilbert curve, so that what is near in
 /// space is near in memory.

@@ -245,7 +245,7 @@ Mesh assembled(const std::vector<Surface>& walls, const std::vector<FilledRoom>&
 
 }  // namespace
 
-Mesh generate_mesh(const Domain& domain, std::uint64_t seed) {
+Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch) {
     constexpr double least_gap_in_sizes = 0.25;  // R/r = 7 for the tet across on an equilateral one
     constexpr int recoveries = 20;
     check_placement(domain, 0, least_gap_in_sizes);
@@ -253,6 +253,7 @@ Mesh generate_mesh(const Domain& domain, std::uint64_t seed) {
     const Snapshot at = snapshot(domain, 0);
     Draft draft = relaxed_draft(at, seed);
     for (int i = 0; i < recoveries; ++i) {
+        heed(watch);
         const std::vector<FilledRoom> rooms = filled_rooms(draft, at);
         if (!rooms.empty()) return assembled(draft.walls, rooms, at);
     }
