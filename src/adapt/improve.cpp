@@ -285,7 +285,7 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
         const auto asked = take_apart(mesh, bad);
         const Doctor doctor{mesh, at_time, options, changed};
         const Vertex next = next_vertex(mesh);
-        auto remedies = propose_all(asked.size(), [&](std::size_t i) { return doctor.remedy(asked[i]); });
+        auto remedies = propose_all(asked.size(), [&](std::size_t i) { return doctor.remedy(asked[i]); }, options.watch);
         std::vector<Tet> again;
         Replaced replaced;
         std::size_t i = 0;
@@ -370,7 +370,8 @@ Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
     std::ranges::copy_if(cells, std::back_inserter(tried), [&](Tet t) { return alive(mesh, t); });
     for (int round = 0; round < most_swap_rounds && !tried.empty(); ++round) {
         const auto proposals =
-            propose_all(tried.size(), [&](std::size_t i) { return swap_longest_edge(mesh, tried[i], limit); });
+            propose_all(tried.size(), [&](std::size_t i) { return swap_longest_edge(mesh, tried[i], limit); },
+                        options.watch);
         Replaced replaced;
         std::vector<Tet> again;
         const std::size_t known = changes.cells.size();

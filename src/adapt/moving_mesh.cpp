@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -71,6 +72,10 @@ MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& o
 }
 
 void MovingMesh::begin_step() {
+    if (std::exchange(dropped_, false)) {
+        current_ = before_ = reference_;
+        clear(zone_);
+    }
     const auto replaced = replaced_.list();
     for (Mesh* mesh : {&current_, &before_}) copy_changed(*mesh, reference_, replaced, moved_);
     follow(zone_, current_, replaced_);
@@ -85,6 +90,7 @@ void MovingMesh::begin_step() {
 
 const Changes& MovingMesh::refine() {
     Changes& changes = statistics_.refined;
+    heed(options_.watch);
     if (trouble_.empty()) return changes;
     const Snapshot at_time = snapshot(domain_, time_);
     AdaptOptions options = options_;
@@ -107,6 +113,7 @@ const Changes& MovingMesh::refine() {
 }
 
 void MovingMesh::move_boundary(double t) {
+    heed(options_.watch);
     target_time_ = t;
     statistics_.legs = 1;
     place_boundary(current_, domain_, bodies_, time_, t, zone_);
@@ -124,6 +131,7 @@ void MovingMesh::move_in_legs() {
     copy_changed(current_, before_, {}, moved_);
     double here = time_;
     for (int leg = 1; leg <= most_legs; ++leg) {
+        heed(options_.watch);
         statistics_.legs = leg;
         const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, target_time_, zone_);
         const double share = report.arrived ? 1 : share_of_safe * report.fraction;
@@ -241,12 +249,13 @@ const Changes& MovingMesh::accept() {
     trouble_.clear();
 
     Changes& changes = statistics_.remeshed;
-    changes = remesh(options_);
+    AdaptOptions options = options_;
+    options.watch = nullptr;  // the reference cannot be taken back
+    changes = remesh(options);
     if (worst_aspect_ratio_of(reference_, changes.cells) > options_.floor) {
         // What passed the floor on its way stayed there: taken back, and done again without passing it.
         note_replaced(changes);
         copy_changed(reference_, before_, replaced_.list(), moved_);
-        AdaptOptions options = options_;
         options.passing = std::min(options.passing, options.floor);
         changes = remesh(options);
     }

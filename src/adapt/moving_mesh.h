@@ -57,6 +57,8 @@ public:
     /// Empty if the motion arrived and every cell meets the floors, all along its way.
     [[nodiscard]] std::optional<Refusal> refusal() const;
     void refuse();
+    /// Drops the attempt under way, of which an exception may have left anything: the reference is as it was.
+    void drop() { dropped_ = true; }
     /// The current mesh becomes the reference and is remeshed where needed. The solution is to be carried
     /// from before() to reference() at the vertices that are returned.
     const Changes& accept();
@@ -85,6 +87,7 @@ private:
     std::vector<Vertex> moved_;      // and which vertices may have other places
     std::vector<Vec3> trouble_;      // where the attempts refused since the last accepted step got stuck
     std::optional<Refusal> stuck_;   // the motion did not arrive
+    bool dropped_ = false;           // the other two meshes may differ from the reference anywhere
     StepStatistics statistics_;
 };
 

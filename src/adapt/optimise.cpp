@@ -97,11 +97,12 @@ std::vector<Vertex> take_apart(const Zone& zone, std::vector<Vertex>& vertices) 
 
 /// Moves the vertices of cells worse than `above`, each once, to their best places: at once those that share no
 /// cell.
-int optimise_worst(Zone& zone, const Mesh& mesh, double above) {
+int optimise_worst(Zone& zone, const Mesh& mesh, double above, const Watch* watch) {
     const auto is_bad = [&](Tet t) { return zone.ratio[t] > above; };
     std::atomic<int> moved = 0;
     auto vertices = vertices_of_worse(zone, mesh, above);
     while (!vertices.empty()) {
+        heed(watch);
         const auto apart = take_apart(zone, vertices);
         for_all(apart.size(), [&](std::size_t i) {
             std::vector<StarFacet> star;
@@ -136,21 +137,23 @@ std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOpti
     const auto take_back = [&] {
         for (std::size_t i = 0; i < moved.size(); ++i) zone.place[zone.vertices[i]] = moved[i];
     };
-    for (int i = 0; i < options.relaxations; ++i)
+    for (int i = 0; i < options.relaxations; ++i) {
+        heed(options.watch);
         if (!equalise_volumes(zone, mesh)) {
             take_back();
             break;
         }
+    }
     measure(zone, mesh);
     const double spoilt = std::max(options.good_enough, near_the_floor * options.floor);
-    for (int i = 0; i < most_retreats && retreat(zone, mesh, moved, spoilt); ++i) {}
+    for (int i = 0; i < most_retreats && retreat(zone, mesh, moved, spoilt); ++i) heed(options.watch);
     if (std::ranges::any_of(zone.cells, [&](Tet t) { return !std::isfinite(zone.ratio[t]); })) {
         take_back();
         return std::nullopt;
     }
     int count = 0;
     for (int i = 0; i < most_passes; ++i) {
-        const int more = optimise_worst(zone, mesh, spoilt);
+        const int more = optimise_worst(zone, mesh, spoilt, options.watch);
         count += more;
         if (more == 0) break;
     }

@@ -19,13 +19,15 @@ struct Proposal {
 };
 
 /// What `propose` says for 0 ... count - 1, in this order, where it says something (it returns an optional); asked
-/// by several threads at once on a mesh that nothing changes meanwhile: the same for any number of threads.
+/// by several threads at once on a mesh that nothing changes meanwhile: the same for any number of threads. Throws
+/// Interrupted if the watch says so.
 template <class Propose>
-[[nodiscard]] auto propose_all(std::size_t count, Propose propose) {
+[[nodiscard]] auto propose_all(std::size_t count, Propose propose, const Watch* watch = nullptr) {
     using What = typename decltype(propose(count))::value_type;
     constexpr std::size_t at_once = 64;
     std::vector<std::vector<Proposal<What>>> parts((count + at_once - 1) / at_once);
     for_all(parts.size(), [&](std::size_t part) {
+        heed(watch);
         for (std::size_t i = at_once * part; i < std::min(count, at_once * (part + 1)); ++i)
             if (auto what = propose(i)) parts[part].push_back({i, std::move(*what)});
     }, 1);

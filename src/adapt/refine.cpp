@@ -262,7 +262,9 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
     const auto in_zone = [&](Vertex v, std::vector<Tet>& tets) { ball_at_start(mesh, zone, v, tets); };
     const auto in_mesh = [&](Vertex v, std::vector<Tet>& tets) { ball(mesh, v, tets); };
     Replaced replaced;
-    for (auto& [i, proposed] : propose_all(shorts, [&](std::size_t i) { return collapse(i, in_zone); })) {
+    for (auto& [i, proposed] : propose_all(shorts, [&](std::size_t i) { return collapse(i, in_zone); },
+                                            options.watch)) {
+        heed(options.watch);
         std::optional<Cavity> cavity = std::move(proposed);
         if (replaced.outdates(*cavity)) cavity = cell_at(mesh, wrong[i]) ? collapse(i, in_mesh) : std::nullopt;
         if (!cavity) continue;
@@ -271,6 +273,7 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
         ++changes.collapses;
     }
     for (std::size_t i = shorts; i < wrong.size(); ++i) {
+        heed(options.watch);
         const auto cell = cell_at(mesh, wrong[i]);
         if (!cell || measure.ratio(wrong[i].edge) != wrong[i].ratio) continue;
         const auto cavity = split(mesh, wrong[i].edge, *cell, options);

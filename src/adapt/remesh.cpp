@@ -110,7 +110,8 @@ Vec3 random_place(const Mesh& mesh, Tet t, Random& random) {
     return sum / total;
 }
 
-void fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& at_time, Random& random, Hole& hole) {
+void fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& at_time, Random& random, Hole& hole,
+                      const Watch* watch) {
     PointGrid taken;
     for (const Vec3& p : hole.points) taken.insert(p, target_size(at_time, p));
     for (Tet t : cluster.cells) {
@@ -118,6 +119,7 @@ void fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& 
         const double fitting = volume(mesh, t) / (std::pow(spacing_in_sizes * size, 3) / std::numbers::sqrt2);
         const int tries = 1 + static_cast<int>(std::ceil(tries_per_point * fitting));
         for (int i = 0; i < tries; ++i) {
+            heed(watch);
             const Vec3 x = random_place(mesh, t, random);
             const double here = target_size(at_time, x);
             if (!has_room(hole, taken, x, here)) continue;
@@ -162,8 +164,8 @@ std::map<std::array<int, 3>, Facet> facets_by_vertices(const Triangulation& all)
     return seen;
 }
 
-Filling fill_hole(const Hole& hole, const Box& box) {
-    const Triangulation all = triangulate(hole.points);
+Filling fill_hole(const Hole& hole, const Box& box, const Watch* watch) {
+    const Triangulation all = triangulate(hole.points, watch);
     const auto seen = facets_by_vertices(all);
     Filling filling;
     std::vector<char> inside(all.tets.size(), 0), barred(4 * all.tets.size(), 0);
@@ -275,9 +277,10 @@ std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, co
     Cluster cluster(tets);
     Random random{options.seed};
     for (int growth = 0; growth < most_growths; ++growth) {
+        heed(options.watch);
         Hole hole = boundary_of(mesh, cluster);
-        fill_with_points(mesh, cluster, at_time, random, hole);
-        const Filling filling = fill_hole(hole, at_time.box);
+        fill_with_points(mesh, cluster, at_time, random, hole, options.watch);
+        const Filling filling = fill_hole(hole, at_time.box, options.watch);
         if (!filling.missing.empty()) {
             if (!grow_across(mesh, hole, filling.missing, cluster)) return std::nullopt;
             continue;
@@ -335,8 +338,11 @@ void climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, C
 
 Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
     Changes changes;
-    for (Tet t : cells)
-        if (alive(mesh, t) && aspect_ratio(mesh, t) > options.floor) climb(mesh, t, at_time, options, changes);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (!alive(mesh, cells[i]) || aspect_ratio(mesh, cells[i]) <= options.floor) continue;
+        heed(options.watch, "repairing cells", static_cast<double>(i) / static_cast<double>(cells.size()));
+        climb(mesh, cells[i], at_time, options, changes);
+    }
     return changes;
 }
 

@@ -3,6 +3,7 @@
 
 #include "app/check.h"
 #include "app/initial_mesh.h"
+#include "app/interrupt.h"
 #include "app/new_case.h"
 #include "app/run.h"
 #include "base/error.h"
@@ -25,14 +26,24 @@ struct MeshOptions {
     std::filesystem::path case_file, out;
 };
 
+Mesh mesh_of(const Case& it, const Watch& watch) {
+    try {
+        check_all_paths(it, &watch);
+        return initial_mesh(it, &watch);
+    } catch (const Interrupted&) {
+        throw Interrupted("interrupted while the initial mesh was made; nothing was written");
+    }
+}
+
 int write_initial_mesh(const MeshOptions& options) {
     if (options.out.extension() != ".vtu") {
         throw CaseError(fmt::format("{}: the mesh is written as VTU; name a file that ends in .vtu",
                                     options.out.string()));
     }
+    Watch watch;
+    const CatchInterrupts catching(watch);
     const Case it = read_case(options.case_file);
-    check_all_paths(it);
-    const Mesh mesh = initial_mesh(it);
+    const Mesh mesh = mesh_of(it, watch);
     write_vtu(options.out, mesh);
     const QualitySummary quality = summarise_quality(mesh);
     fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
@@ -146,6 +157,8 @@ int carry_out(const CLI::App& app, const Request& request) {
     } catch (const DomainError& error) {
         const auto& file = app.got_subcommand("run") ? request.run.case_file : request.mesh.case_file;
         return complain(fmt::format("{}: {}", file.string(), error.what()), bad_case);
+    } catch (const Interrupted& error) {
+        return complain(error.what(), interrupted);
     } catch (const FloorError& error) {
         return complain(error.what(), floors_unreachable);
     } catch (const SolverError& error) {

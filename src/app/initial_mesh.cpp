@@ -14,18 +14,19 @@ constexpr int path_samples_per_step = 8;  // a body may not slip through another
 
 }  // namespace
 
-AdaptOptions adapt_options(const Case& it) {
-    return {.floor = it.quality.max_aspect_ratio, .seed = it.random.seed};
+AdaptOptions adapt_options(const Case& it, const Watch* watch) {
+    return {.floor = it.quality.max_aspect_ratio, .seed = it.random.seed, .watch = watch};
 }
 
-void check_all_paths(const Case& it) {
-    check_paths(it.domain, 0, it.time.end, path_samples_per_step * it.time.steps + 1);
+void check_all_paths(const Case& it, const Watch* watch) {
+    check_paths(it.domain, 0, it.time.end, path_samples_per_step * it.time.steps + 1, watch);
 }
 
-Mesh initial_mesh(const Case& it) {
-    const AdaptOptions options = adapt_options(it);
+Mesh initial_mesh(const Case& it, const Watch* watch) {
+    const AdaptOptions options = adapt_options(it, watch);
     const Snapshot at = snapshot(it.domain, 0);
-    Mesh mesh = generate_mesh(it.domain, it.random.seed);
+    Mesh mesh = generate_mesh(it.domain, it.random.seed, watch);
+    heed(watch, "improving cells", 0);
     improve(mesh, all_tets(mesh), at, options);
     repair(mesh, all_tets(mesh), at, options);
     const QualitySummary quality = summarise_quality(mesh);

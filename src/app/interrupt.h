@@ -1,19 +1,17 @@
 #pragma once
 
-#include "simulate/petsc.h"
+#include "base/watch.h"
 
 namespace kropla {
 
-/// While it lives, SIGINT and SIGTERM are noted instead of ending the program. One at a time.
+/// While it lives, SIGINT and SIGTERM set the watch's `stop` instead of ending the program. A second one, of whoever
+/// cannot wait, ends it at once with code 130. One at a time.
 class CatchInterrupts {
 public:
-    CatchInterrupts();
+    explicit CatchInterrupts(Watch& watch);
     ~CatchInterrupts();
     CatchInterrupts(const CatchInterrupts&) = delete;
     CatchInterrupts& operator=(const CatchInterrupts&) = delete;
 };
-
-/// Was a signal noted, on any rank? All ranks ask together and get the same answer.
-[[nodiscard]] bool interrupted(const Ranks& ranks);
 
 }  // namespace kropla

@@ -10,6 +10,7 @@
 #include "app/step.h"
 #include "base/error.h"
 #include "report/page.h"
+#include "simulate/stop.h"
 
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
@@ -23,14 +24,14 @@ namespace {
 constexpr double least_dt_share = 1e-3;    // of the wanted dt: below, the floors count as unreachable
 constexpr double same_time = 1e-9;         // of the wanted dt: what is left of a step is rounding
 
-State start(const Case& it) {
-    Mesh mesh = initial_mesh(it);
+State start(const Case& it, const Watch* watch) {
+    Mesh mesh = initial_mesh(it, watch);
     std::vector<NodalField> fields;
     if (it.heat) {
         check_heat(*it.heat, mesh);
         fields.push_back(initial_temperature(mesh, *it.heat));
     }
-    return {MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it)), std::move(fields)};
+    return {MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it, watch)), std::move(fields)};
 }
 
 /// How far a run is.
@@ -40,12 +41,12 @@ struct Place {
     double next_dt;  // [s]
 };
 
-Place resume(const Case& it, const std::filesystem::path& folder) {
+Place resume(const Case& it, const std::filesystem::path& folder, const Watch* watch) {
     Checkpoint saved = read_checkpoint(folder / checkpoint_name);
     if (saved.case_text != to_toml(it))
         throw CaseError(fmt::format("{}: the run in it is of another case than the one given; its own is {}",
                                     folder.string(), (folder / "case.toml").string()));
-    return {{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it)),
+    return {{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it, watch)),
              std::move(saved.fields)},
             saved.step,
             saved.next_dt};
@@ -78,11 +79,10 @@ public:
     TimeLoop(const Case& it, const Ranks& ranks, Place place, RunOutput& output, bool test_rollback)
         : it_(it), ranks_(ranks), place_(std::move(place)), output_(output), test_rollback_(test_rollback) {}
 
-    /// Goes on to the end of the case. Returns false if it was interrupted.
-    bool run() {
+    /// Goes on to the end of the case. Throws Interrupted if a watch says so: then the step is dropped.
+    void run() {
         const double wanted = it_.time.end / it_.time.steps;
-        while (!at_end(place_, it_.time)) {
-            if (interrupted(ranks_)) return false;
+        for (heed(ranks_); !at_end(place_, it_.time); heed(ranks_)) {
             const auto begin = std::chrono::steady_clock::now();
             const StepReport report =
                 time_step(place_.state, it_, ranks_,
@@ -92,7 +92,6 @@ public:
             place_.next_dt = report.attempts > 1 ? report.dt : std::min(wanted, 2 * place_.next_dt);
             write(report, begin);
         }
-        return true;
     }
 
     [[nodiscard]] Checkpoint checkpoint() const { return checkpoint_of(place_, it_); }
@@ -116,30 +115,64 @@ private:
     bool test_rollback_;
 };
 
-/// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint.
-int run_to_end(TimeLoop& loop, RunOutput& output) {
+/// Does what all ranks do alike. A rank that its watch or an error has ended tells the others, who hear of it where
+/// they meet next. (What ends rank 0 alone, which writes, ends the others too: see below.)
+template <class Deed>
+auto together(const Ranks& ranks, Deed deed) {
     try {
-        if (loop.run()) return 0;
+        return deed();
+    } catch (const AllInterrupted&) {
+        throw;
+    } catch (const FileError&) {
+        throw;
+    } catch (const std::runtime_error&) {
+        leave(ranks);
+        throw;
+    }
+}
+
+/// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint.
+int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks) {
+    try {
+        together(ranks, [&] { loop.run(); });
+        return 0;
     } catch (const FileError&) {
         throw;  // the checkpoint could not be written either
+    } catch (const Interrupted&) {
+        output.write_checkpoint(loop.checkpoint());
+        output.say("interrupted: a checkpoint is written; go on with --resume");
+        return 130;
     } catch (const std::runtime_error&) {
         output.write_checkpoint(loop.checkpoint());
         throw;
     }
-    output.write_checkpoint(loop.checkpoint());
-    output.say("interrupted: a checkpoint is written; go on with --resume");
-    return 130;
+}
+
+/// Where a run begins. Nothing is written yet.
+Place first_place(const RunOptions& options, const Case& it, const Ranks& ranks) {
+    try {
+        return together(ranks, [&] {
+            check_all_paths(it, ranks.watch);
+            const double wanted = it.time.end / it.time.steps;
+            Place place = options.resume ? resume(it, options.out, ranks.watch)
+                                         : Place{start(it, ranks.watch), 0, wanted};
+            heed(ranks);  // all have looked at the folder before one writes
+            return place;
+        });
+    } catch (const Interrupted&) {
+        if (options.resume) throw Interrupted("interrupted before the first step; the folder is as it was");
+        throw Interrupted("interrupted while the initial mesh was made; nothing was written");
+    }
 }
 
 int run_with(const RunOptions& options, const Ranks& ranks) {
     const Case it = read_case(options.case_file);
-    check_all_paths(it);
-    const double wanted = it.time.end / it.time.steps;
-    Place place = options.resume ? resume(it, options.out) : Place{start(it), 0, wanted};
+    check_run_folder(options);
+    Place place = first_place(options, it, ranks);
     RunOutput output(options, it, ranks.rank == 0, place.step, place.state);
     if (!options.resume) output.write_checkpoint(checkpoint_of(place, it));
     TimeLoop loop(it, ranks, std::move(place), output, options.test_rollback);
-    const int code = run_to_end(loop, output);
+    const int code = run_to_end(loop, output, ranks);
     if (ranks.rank == 0) write_report(options.out);
     return code;
 }
@@ -155,17 +188,17 @@ void silence(const Ranks& ranks) {
 }  // namespace
 
 int run(const RunOptions& options) {
+    Watch watch;
+    const CatchInterrupts catching(watch);
     const PetscSession petsc(options.solver_options);
-    const Ranks ranks = petsc.all_ranks();
+    Ranks ranks = petsc.all_ranks();
+    ranks.watch = &watch;
     silence(ranks);
     using oneapi::tbb::global_control;
     std::optional<global_control> threads;
     if (options.threads > 0)
         threads.emplace(global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
-    const CatchInterrupts catching;
     try {
-        check_run_folder(options);
-        MPI_Barrier(ranks.communicator);  // all have looked before one writes
         const int code = run_with(options, ranks);
         return ranks.rank == 0 ? code : 0;
     } catch (const FileError& error) {

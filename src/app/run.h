@@ -16,7 +16,8 @@ struct RunOptions {
 };
 
 /// Runs a case from start, or from its checkpoint, to end. Returns the exit code: 0, or 130 if it was
-/// interrupted and left a checkpoint. Throws CaseError, DomainError, FloorError, SolverError or FileError.
+/// interrupted and left a checkpoint. Throws Interrupted if that was before there was a first one; CaseError,
+/// DomainError, FloorError, SolverError or FileError.
 [[nodiscard]] int run(const RunOptions& options);
 
 }  // namespace kropla

@@ -130,7 +130,9 @@ void report_changes(const MovingMesh& moving, StepReport& report) {
 
 }  // namespace
 
-StepReport time_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
+namespace {
+
+StepReport try_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
     MovingMesh& moving = state.moving;
     double dt = options.dt;
     bool to_roll_back = options.test_rollback;
@@ -141,6 +143,7 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, const Ste
         report.energy_by_transfer = report.transferred_fraction = 0;
         report.transfer = {};
         prepare(moving, fields, start + dt, it, report);
+        heed(ranks.watch);
         if (const auto refusal = moving.refusal()) {
             moving.refuse();
             report.refused = refusal->why;
@@ -163,6 +166,17 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, const Ste
     report.dt = dt;
     report_changes(moving, report);
     return report;
+}
+
+}  // namespace
+
+StepReport time_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
+    try {
+        return try_step(state, it, ranks, options);
+    } catch (...) {
+        state.moving.drop();
+        throw;
+    }
 }
 
 }  // namespace kropla

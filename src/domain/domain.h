@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "domain/shape.h"
 #include "mesh/mesh.h"
 
@@ -108,7 +109,7 @@ void check_placement(const Domain& domain, double t, double least_gap);
 void check_layers(const Domain& domain, double t);
 
 /// Throws DomainError if between `start` and `end`, looked at `samples` times, a motion is not finite, or
-/// takes a body out of the box or into another; says which, when and where.
-void check_paths(const Domain& domain, double start, double end, int samples);
+/// takes a body out of the box or into another; says which, when and where. Interrupted if the watch says so.
+void check_paths(const Domain& domain, double start, double end, int samples, const Watch* watch = nullptr);
 
 }  // namespace kropla

@@ -121,9 +121,10 @@ void check_placement(const Domain& domain, double t, double least_gap) {
     }
 }
 
-void check_paths(const Domain& domain, double start, double end, int samples) {
+void check_paths(const Domain& domain, double start, double end, int samples, const Watch* watch) {
     assert(samples >= 2);
     for (int k = 0; k < samples; ++k) {
+        heed(watch);
         const double t = start + (end - start) * k / (samples - 1);
         const std::vector<Shape> shapes = shapes_on_path(domain, t);
         for (std::size_t i = 0; i < shapes.size(); ++i)

@@ -17,6 +17,8 @@ namespace {
 using delaunay::Cell, delaunay::ghost, delaunay::is_ghost, delaunay::Kernel, delaunay::Mark, delaunay::none, delaunay::others;
 using std::uint32_t;
 
+constexpr uint32_t points_at_once = 4096;  // between two looks at the watch: some milliseconds
+
 /// Brings four points that are not coplanar, positively oriented, to the front of the order, the others
 /// unchanged behind them. Returns false if there are none.
 bool bring_tet_to_front(std::span<const Vec3> points, std::vector<Vertex>& order) {
@@ -103,7 +105,8 @@ Triangulation triangulation_of(const std::vector<Cell>& cells) {
 
 }  // namespace
 
-Triangulation triangulate_in_order(std::span<const Vec3> points, std::span<const Vertex> order) {
+Triangulation triangulate_in_order(std::span<const Vec3> points, std::span<const Vertex> order,
+                                   const Watch* watch) {
     std::vector<Vertex> sequence(order.begin(), order.end());
     if (!bring_tet_to_front(points, sequence)) return {};
     Kernel k;
@@ -114,14 +117,17 @@ Triangulation triangulate_in_order(std::span<const Vec3> points, std::span<const
     k.cells.reserve(cells);
     k.mark.reserve(cells);
     start(k);
-    for (uint32_t p = 5; p < k.sites.size(); ++p) delaunay::insert(k, p);
+    for (uint32_t p = 5; p < k.sites.size(); ++p) {
+        if (p % points_at_once == 0) heed(watch);
+        delaunay::insert(k, p);
+    }
     const std::vector<Cell> finite = finite_cells(std::move(k));
     return triangulation_of(finite);
 }
 
-Triangulation triangulate(std::span<const Vec3> points) {
+Triangulation triangulate(std::span<const Vec3> points, const Watch* watch) {
     SpatialOrder spatial = hilbert_order(points);
-    Triangulation result = triangulate_in_order(points, in_random_rounds(spatial.order));
+    Triangulation result = triangulate_in_order(points, in_random_rounds(spatial.order), watch);
     result.same_as = std::move(spatial.same_as);
     return result;
 }

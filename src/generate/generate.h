@@ -20,7 +20,8 @@ struct Triangulation {
 };
 /// Triangulates any set of points, degenerate ones included; ties are broken by the points' indices, so that
 /// the triangulation is unique. Fewer than four points, or all of them coplanar: no tets.
-[[nodiscard]] Triangulation triangulate(std::span<const Vec3> points);
+/// Throws Interrupted if the watch says so.
+[[nodiscard]] Triangulation triangulate(std::span<const Vec3> points, const Watch* watch = nullptr);
 
 /// A closed triangulated surface; triangles are counter-clockwise seen from outside.
 struct Surface {
@@ -29,7 +30,8 @@ struct Surface {
 };
 /// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]; vertices lie on
 /// it.
-[[nodiscard]] Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed);
+[[nodiscard]] Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed,
+                                          const Watch* watch = nullptr);
 
 /// The points from which the initial mesh is made: of each body's surface, of the box's corners, edges and
 /// faces, and inside; all at the target size, well apart, nowhere a gap that would hold another (maximal).
@@ -38,7 +40,7 @@ struct PointSet {
     std::vector<Surface> surfaces;      // per body
     std::vector<int> first_of_surface;  // per body: the index in `points` of its surface's first point
 };
-[[nodiscard]] PointSet sample_points(const Snapshot& at, std::uint64_t seed);
+[[nodiscard]] PointSet sample_points(const Snapshot& at, std::uint64_t seed, const Watch* watch = nullptr);
 
 /// The initial mesh (paper 1.1, 1.4), before any improvement: points, Delaunay, bodies identified as regions,
 /// faces of the box as patches, and the prism layers that bodies have: a body's outside before its inside,

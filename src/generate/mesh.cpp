@@ -63,9 +63,9 @@ Room empty_room(const std::vector<Surface>& walls, std::size_t room, const Snaps
 bool in_use(const Snapshot& at, std::size_t room) { return room == 0 || is_layered(at, room - 1); }
 
 /// The sampled points, relaxed but for those of the surfaces.
-Draft relaxed_draft(const Snapshot& at, std::uint64_t seed) {
+Draft relaxed_draft(const Snapshot& at, std::uint64_t seed, const Watch* watch) {
     constexpr int rounds = 10;
-    PointSet set = sample_points(at, seed);
+    PointSet set = sample_points(at, seed, watch);
     std::size_t fixed = 0;
     for (const Surface& s : set.surfaces) fixed += s.points.size();
     Draft draft{std::move(set.surfaces), {}};
@@ -78,7 +78,7 @@ Draft relaxed_draft(const Snapshot& at, std::uint64_t seed) {
         std::vector<Vec3> points = all_points(room);
         const auto free_from = static_cast<std::ptrdiff_t>(points.size());
         points.insert(points.end(), draft.others[r].begin(), draft.others[r].end());
-        relax_points(points, static_cast<std::size_t>(free_from), at, rounds);
+        relax_points(points, static_cast<std::size_t>(free_from), at, rounds, watch);
         draft.others[r].assign(points.begin() + free_from, points.end());
     }
     return draft;
@@ -127,10 +127,10 @@ void recover(Draft& draft, std::size_t r, const Room& room, const std::vector<Su
 }
 
 /// Triangulates the room; if a surface is not among the facets, makes room for it in the draft instead.
-std::optional<FilledRoom> filled_room(Draft& draft, std::size_t r, const Snapshot& at) {
+std::optional<FilledRoom> filled_room(Draft& draft, std::size_t r, const Snapshot& at, const Watch* watch) {
     FilledRoom done{empty_room(draft.walls, r, at), {}, {}};
     done.room.others = draft.others[r];
-    done.filled = triangulate(all_points(done.room));
+    done.filled = triangulate(all_points(done.room), watch);
     const std::vector<SurfaceFacet> found = find_surfaces(done.filled, done.room);
     if (std::ranges::any_of(found, [](const SurfaceFacet& f) { return !f.inner; })) {
         recover(draft, r, done.room, found, at);
@@ -141,12 +141,12 @@ std::optional<FilledRoom> filled_room(Draft& draft, std::size_t r, const Snapsho
 }
 
 /// The rooms in use, in order, filled; empty if one could not be.
-std::vector<FilledRoom> filled_rooms(Draft& draft, const Snapshot& at) {
+std::vector<FilledRoom> filled_rooms(Draft& draft, const Snapshot& at, const Watch* watch) {
     std::vector<FilledRoom> rooms;
     bool all = true;
     for (std::size_t r = 0; r < draft.others.size(); ++r) {
         if (!in_use(at, r)) continue;
-        auto filled = filled_room(draft, r, at);
+        auto filled = filled_room(draft, r, at, watch);
         all = all && filled;
         if (all) rooms.push_back(std::move(*filled));
     }
@@ -251,10 +251,10 @@ Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch)
     check_placement(domain, 0, least_gap_in_sizes);
     check_layers(domain, 0);
     const Snapshot at = snapshot(domain, 0);
-    Draft draft = relaxed_draft(at, seed);
+    Draft draft = relaxed_draft(at, seed, watch);
     for (int i = 0; i < recoveries; ++i) {
-        heed(watch);
-        const std::vector<FilledRoom> rooms = filled_rooms(draft, at);
+        heed(watch, "joining cells", static_cast<double>(i) / recoveries);
+        const std::vector<FilledRoom> rooms = filled_rooms(draft, at, watch);
         if (!rooms.empty()) return assembled(draft.walls, rooms, at);
     }
     throw DomainError(

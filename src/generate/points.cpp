@@ -27,7 +27,7 @@ void append(std::vector<Vec3>& to, const std::vector<Vec3>& more) {
 std::uint64_t stage_seed(std::uint64_t seed, std::size_t stage) { return random_bits(seed, stage); }
 
 std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector<Vec3>& edge_points,
-                              Random random) {
+                              Random random, const Watch* watch) {
     const auto spacing = [&](const Vec3& x) { return spacing_on_face * target_size(at, x); };
     const auto room_for = [&](const Vec3& x) { return clearance_on_face(at, patch, x); };
     PointGrid taken;
@@ -35,18 +35,19 @@ std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector
         if (lies_on_face(at.box, patch, x)) taken.insert(x, spacing(x));
     return fill_room(face_of_box(at.box, patch),
                      {spacing, spacing_on_face * at.size.growth, room_for, clearance_slope(at)}, taken,
-                     random);
+                     random, watch);
 }
 
 std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& boundary_points,
-                                const std::vector<Vec3>& shell_points, Random random) {
+                                const std::vector<Vec3>& shell_points, Random random,
+                                const Watch* watch) {
     const auto spacing = [&](const Vec3& x) { return spacing_inside * target_size(at, x); };
     const auto room_for = [&](const Vec3& x) { return clearance(at, x); };
     PointGrid taken;
     for (const Vec3& x : boundary_points) taken.insert(x, spacing(x));
     for (const Vec3& x : shell_points) taken.insert(x, spacing(x));
     return fill_room(at.box, {spacing, spacing_inside * at.size.growth, room_for, clearance_slope(at)}, taken,
-                     random);
+                     random, watch);
 }
 
 /// The points of the shells of all layers, where tets begin.
@@ -61,22 +62,24 @@ std::vector<Vec3> sample_shells(const Snapshot& at, const std::vector<Surface>& 
 
 }  // namespace
 
-PointSet sample_points(const Snapshot& at, std::uint64_t seed) {
+PointSet sample_points(const Snapshot& at, std::uint64_t seed, const Watch* watch) {
     PointSet set;
     std::size_t stage = 0;
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        heed(watch, "meshing surfaces", static_cast<double>(body) / static_cast<double>(at.shapes.size()));
         set.surfaces.push_back(
-            triangulate_surface(at.shapes[body], surface_size(at, body), stage_seed(seed, stage++)));
+            triangulate_surface(at.shapes[body], surface_size(at, body), stage_seed(seed, stage++), watch));
         set.first_of_surface.push_back(static_cast<int>(set.points.size()));
         append(set.points, set.surfaces.back().points);
     }
+    heed(watch, "drawing points", 0);
     std::vector<Vec3> edge_points = box_corners(at.box);
     append(edge_points, sample_box_edges(at));
     append(set.points, edge_points);
     for (int face = 0; face < 6; ++face)
-        append(set.points, sample_face(at, Patch(face), edge_points, Random{stage_seed(seed, stage++)}));
-    append(set.points,
-           sample_inside(at, set.points, sample_shells(at, set.surfaces), Random{stage_seed(seed, stage)}));
+        append(set.points, sample_face(at, Patch(face), edge_points, Random{stage_seed(seed, stage++)}, watch));
+    append(set.points, sample_inside(at, set.points, sample_shells(at, set.surfaces),
+                                     Random{stage_seed(seed, stage)}, watch));
     return set;
 }
 

@@ -19,6 +19,8 @@ namespace kropla {
 
 namespace {
 
+constexpr std::int32_t cells_at_once = 4096;  // between two looks at the watch: a millisecond
+
 /// The mean that a point is drawn to: sums over its cells.
 struct Pull {
     Vec3 sum;  // of weight * displacement
@@ -67,11 +69,12 @@ void pull_on_face(Relaxation& r, const std::array<Vertex, 3>& triangle) {
             pull_towards(r, v, centre, weight);
 }
 
-Relaxation pulls(const std::vector<Vec3>& points, const Snapshot& at) {
+Relaxation pulls(const std::vector<Vec3>& points, const Snapshot& at, const Watch* watch) {
     Relaxation r{points, at, {}, std::vector<Pull>(points.size())};
     for (const Vec3& x : points) r.faces.push_back(faces_at(at.box, x));
-    const Triangulation filled = triangulate(points);
+    const Triangulation filled = triangulate(points, watch);
     for (Tet t : filled.tets.indices()) {
+        if (t.value % cells_at_once == 0) heed(watch);
         const auto& corners = filled.tets[t];
         pull_inner(r, corners);
         for (std::size_t i = 0; i < 4; ++i) {
@@ -100,9 +103,11 @@ Vec3 pulled(const Snapshot& at, const Vec3& x, unsigned faces, const Pull& pull)
 
 }  // namespace
 
-void relax_points(std::vector<Vec3>& points, std::size_t first_free, const Snapshot& at, int rounds) {
+void relax_points(std::vector<Vec3>& points, std::size_t first_free, const Snapshot& at, int rounds,
+                  const Watch* watch) {
     for (int round = 0; round < rounds; ++round) {
-        const Relaxation r = pulls(points, at);
+        heed(watch, "relaxing points", static_cast<double>(round) / rounds);
+        const Relaxation r = pulls(points, at, watch);
         for (std::size_t i = first_free; i < points.size(); ++i)
             if (r.pull[i].weight > 0) points[i] = pulled(at, points[i], r.faces[i], r.pull[i]);
     }

@@ -79,6 +79,8 @@ bool PointGrid::any_within_at(int level, const Vec3& x, double radius) const {
 
 namespace {
 
+constexpr std::size_t cells_at_once = 4096;  // between two looks at the watch: some milliseconds
+
 struct Cell {
     Vec3 centre, half;  // half its widths; 0 where the room is flat [m]
 };
@@ -117,9 +119,11 @@ bool is_covered(const SampleRule& rule, const PointGrid& taken, const Cell& cell
 }
 
 /// The cells in which to begin: no larger than the spacing there, and not covered.
-std::vector<Cell> first_cells(const Box& room, const SampleRule& rule, const PointGrid& taken) {
+std::vector<Cell> first_cells(const Box& room, const SampleRule& rule, const PointGrid& taken,
+                              const Watch* watch) {
     std::vector<Cell> open = {{0.5 * (room.min + room.max), 0.5 * (room.max - room.min)}}, fine;
-    while (!open.empty()) {
+    for (std::size_t i = 0; !open.empty(); ++i) {
+        if (i % cells_at_once == 0) heed(watch);
         const Cell cell = open.back();
         open.pop_back();
         if (is_covered(rule, taken, cell)) continue;
@@ -144,10 +148,13 @@ Vec3 random_point(const Cell& cell, const Box& room, Random& random) {
 }
 
 /// The parts of the cells that are open still and wide enough to matter.
-std::vector<Cell> open_parts(const std::vector<Cell>& cells, const SampleRule& rule, const PointGrid& taken) {
+std::vector<Cell> open_parts(const std::vector<Cell>& cells, const SampleRule& rule, const PointGrid& taken,
+                             const Watch* watch) {
     constexpr double narrowest_gap = 1e-4;  // of the spacing
     std::vector<Cell> parts, open;
-    for (const Cell& cell : cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (i % cells_at_once == 0) heed(watch);
+        const Cell& cell = cells[i];
         if (is_covered(rule, taken, cell)) continue;
         parts.clear();
         split_cell(cell, parts);
@@ -160,18 +167,20 @@ std::vector<Cell> open_parts(const std::vector<Cell>& cells, const SampleRule& r
 
 }  // namespace
 
-std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken, Random& random) {
+std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken, Random& random,
+                            const Watch* watch) {
     std::vector<Vec3> found;
-    for (std::vector<Cell> open = first_cells(room, rule, taken); !open.empty();) {
+    for (std::vector<Cell> open = first_cells(room, rule, taken, watch); !open.empty();) {
         shuffle_cells(open, random);
-        for (const Cell& cell : open) {
-            const Vec3 x = random_point(cell, room, random);
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            if (i % cells_at_once == 0) heed(watch);
+            const Vec3 x = random_point(open[i], room, random);
             const double spacing = rule.spacing(x);
             if (rule.clearance(x) < 0 || is_crowded(rule, taken, x, spacing, spacing)) continue;
             taken.insert(x, spacing);
             found.push_back(x);
         }
-        open = open_parts(open, rule, taken);
+        open = open_parts(open, rule, taken, watch);
     }
     return found;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/random.h"
+#include "base/watch.h"
 #include "domain/domain.h"
 
 #include <array>
@@ -45,8 +46,9 @@ struct SampleRule {
 };
 
 /// Fills `room`, which may be flat, with random points until none can be added, but in gaps narrower than
-/// 1e-4 spacings. The new points are filed in `taken`, whose points count as neighbours.
+/// 1e-4 spacings. The new points are filed in `taken`, whose points count as neighbours. Throws Interrupted if the
+/// watch says so.
 [[nodiscard]] std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken,
-                                          Random& random);
+                                          Random& random, const Watch* watch = nullptr);
 
 }  // namespace kropla

@@ -191,9 +191,10 @@ Vertex split_longest_edge(Skin& skin, const Shape& shape, Triangle t) {
     return middle;
 }
 
-int flip_edges(Skin& skin) {
+int flip_edges(Skin& skin, const Watch* watch) {
     int flips = 0;
     for (bool changed = true; changed;) {
+        heed(watch);
         changed = false;
         for (Triangle t : skin.triangles.indices())
             for (std::size_t i = 0; i < 3; ++i) {
@@ -207,18 +208,19 @@ int flip_edges(Skin& skin) {
     return flips;
 }
 
-void relax_skin(Skin& skin, const Shape& shape) {
+void relax_skin(Skin& skin, const Shape& shape, const Watch* watch) {
     constexpr int rough_rounds = 25, fine_rounds = 15;  // more do not raise the least angle, by measurement
-    flip_edges(skin);
+    flip_edges(skin, watch);
     for (int round = 0; round < rough_rounds; ++round) {
+        heed(watch);
         equalise_valences(skin);
         move_points(skin, relaxed_places(skin, shape));
     }
     for (int round = 0; round < fine_rounds; ++round) {
-        flip_edges(skin);
+        flip_edges(skin, watch);
         move_points(skin, relaxed_places(skin, shape));
     }
-    flip_edges(skin);
+    flip_edges(skin, watch);
 }
 
 }  // namespace kropla

@@ -27,9 +27,9 @@ Vertex split_longest_edge(Skin& skin, const Shape& shape, Triangle t);
 
 /// Flips edges where that raises the least angle of their two triangles, until none is left. Returns how
 /// many.
-int flip_edges(Skin& skin);
+int flip_edges(Skin& skin, const Watch* watch = nullptr);
 
 /// Moves the points on the surface of `shape` and flips edges until the triangles are well shaped.
-void relax_skin(Skin& skin, const Shape& shape);
+void relax_skin(Skin& skin, const Shape& shape, const Watch* watch = nullptr);
 
 }  // namespace kropla

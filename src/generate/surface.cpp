@@ -52,11 +52,12 @@ Vec3 random_surface_point(const Shape& shape, Random& random) {
 
 /// `count` points of the surface as far apart as darts will have it: the distance kept falls with each
 /// failure.
-std::vector<Vec3> scatter(const Shape& shape, int count, double size, Random& random) {
+std::vector<Vec3> scatter(const Shape& shape, int count, double size, Random& random, const Watch* watch) {
     const double fall = 1 - 0.02 / count;  // per failure: some ten darts are thrown per point
     std::vector<Vec3> points;
     PointGrid taken;
     for (double apart = size; static_cast<int>(points.size()) < count;) {
+        heed(watch);
         const Vec3 x = random_surface_point(shape, random);
         if (taken.any_within(x, apart, size, size)) {
             apart *= fall;
@@ -69,10 +70,10 @@ std::vector<Vec3> scatter(const Shape& shape, int count, double size, Random& ra
 }
 
 /// The hull of points on the surface: with a point inside among them, all tets stand on it and none is flat.
-Surface hull(const std::vector<Vec3>& points, const Vec3& inside) {
+Surface hull(const std::vector<Vec3>& points, const Vec3& inside, const Watch* watch) {
     std::vector<Vec3> all = {inside};
     all.insert(all.end(), points.begin(), points.end());
-    const Triangulation filled = triangulate(all);
+    const Triangulation filled = triangulate(all, watch);
     Surface surface{points, {}};
     for (Tet t : filled.tets.indices())
         for (std::size_t i = 0; i < 4; ++i) {
@@ -87,14 +88,14 @@ Surface hull(const std::vector<Vec3>& points, const Vec3& inside) {
 
 }  // namespace
 
-Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed) {
+Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed, const Watch* watch) {
     assert(size > 0 && size <= least_curvature_radius(shape));
     // Equilateral triangles of edge h have 0.866 h^2 of area per vertex.
     const double wanted = surface_area(shape.semi_axes) / (std::sqrt(0.75) * size * size);
     Random random{seed};
-    const std::vector<Vec3> points = scatter(shape, static_cast<int>(std::lround(wanted)), size, random);
-    Skin skin = make_skin(hull(points, shape.centre), shape.centre);
-    relax_skin(skin, shape);
+    const std::vector<Vec3> points = scatter(shape, static_cast<int>(std::lround(wanted)), size, random, watch);
+    Skin skin = make_skin(hull(points, shape.centre, watch), shape.centre);
+    relax_skin(skin, shape, watch);
     return surface_of(skin);
 }
 

@@ -1,6 +1,7 @@
 #include "simulate/linear_system.h"
 
 #include "base/error.h"
+#include "simulate/stop.h"
 
 #include <algorithm>
 #include <sstream>
@@ -69,6 +70,7 @@ OwnedKsp make_solver(const Ranks& ranks, Mat matrix, const SolverChoice& choice)
     check(KSPSetInitialGuessNonzero(solver, PETSC_TRUE));
     if (choice.singular) check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
     check(KSPSetFromOptions(solver));
+    listen_on_the_way(solver, ranks);
     return owned;
 }
 
@@ -160,6 +162,7 @@ void fix_unknown(LinearSystem& system, int row, double value) {
 }
 
 Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice) {
+    heed(ranks);
     const OwnedVec right = make_vector(ranks, system.right);
     const OwnedVec unknown = make_vector(ranks, system.guess);
     PetscInt all_rows = 0;
@@ -174,6 +177,7 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
     }
     const OwnedKsp solver = make_solver(ranks, matrix.get(), choice);
     check(KSPSolve(solver.get(), right.get(), unknown.get()));
+    heed(ranks);
     throw_unless_converged(solver.get(), choice);
     PetscInt iterations = 0;
     check(KSPGetIterationNumber(solver.get(), &iterations));

@@ -61,7 +61,7 @@ struct Solution {
     double residual;            // [-] |b - A x| / |b|
 };
 /// Solves together with all other ranks. Throws SolverError with PETSc's reason, the iterations and the
-/// residual if it does not converge.
+/// residual if it does not converge, AllInterrupted if the watch of any of them says stop.
 [[nodiscard]] Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice);
 
 }  // namespace kropla

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/watch.h"
+
 #include <petscksp.h>
 
 #include <memory>
@@ -17,6 +19,7 @@ struct Ranks {
     MPI_Comm communicator;
     int rank;
     int count;
+    Watch* watch = nullptr;  // of this process, heeded by all together (stop.h)
 };
 
 /// PETSc and MPI from construction to destruction: one per process, and all that uses PETSc ends before it.
