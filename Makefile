@@ -1,6 +1,8 @@
 # make            builds build/release/bin/kropla
 # make demo       runs the droplet case into demo/droplet and draws demo/pictures; what was there is replaced
 # make test       builds and runs all tests
+# make flood      500 random cases, each frame verified by code of its own: docs/reliability.md; N=20: fewer, SEED=2: others.
+#                 A case that fails is left in flood/failed
 # make bench      builds and runs the benchmarks; beside CGAL, if libcgal-dev is installed
 # make bench-peers  the moving droplet by Kropla and by the mesh generators that are installed (Gmsh, TetGen), one
 #                 table; STEPS=10: fewer meshes of the others
@@ -11,7 +13,7 @@
 # make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer
 # Each installs the Debian packages that are missing.
 
-.PHONY: all demo test bench bench-peers bench-engine bench-strategies bench-spread bench-transfer endurance packages \
+.PHONY: all demo test flood bench bench-peers bench-engine bench-strategies bench-spread bench-transfer endurance packages \
         configure clean
 
 all: configure
@@ -31,6 +33,10 @@ demo: all
 
 test: all
 	ctest --test-dir build/release --output-on-failure -j2
+
+flood: all
+	python3 tests/flood/flood.py build/release/bin/kropla --cases $(or $(N),500) --seed $(or $(SEED),1) \
+		--failed flood/failed $(if $(MARKDOWN),--markdown)
 
 bench: packages
 	cmake --preset bench
@@ -68,4 +74,4 @@ endurance: packages
 	build/bench/bin/kropla_endurance $(STEPS)
 
 clean:
-	rm -rf build demo
+	rm -rf build demo flood
