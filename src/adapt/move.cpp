@@ -31,13 +31,34 @@ struct Travel {
     Shape from, to;
     double reach;     // [m]
     double far_away;  // from the centre, nothing beyond is in reach [m]
+    double grain;     // of places in the body [m]: a power of two
 
     /// Where a point fixed to the body would go from `x`.
     [[nodiscard]] Vec3 displacement(const Vec3& x) const {
         const Vec3 in_body = rotated_back(from.orientation, x - from.centre);
         return to.centre + rotated(to.orientation, in_body) - x;
     }
+    /// Where a vertex of the body comes from `x`. It has one place in the body for ever: found again from `x`
+    /// it is off by rounding only, which is less than half a grain. So nothing adds up over the steps, and
+    /// volumes stay.
+    [[nodiscard]] Vec3 taken_along(const Vec3& x) const {
+        if (from.centre == to.centre && from.orientation.axes == to.orientation.axes) return x;
+        Vec3 in_body = rotated_back(from.orientation, x - from.centre);
+        for (int axis = 0; axis < 3; ++axis) in_body[axis] = grain * std::round(in_body[axis] / grain);
+        return to.centre + rotated(to.orientation, in_body);
+    }
 };
+
+/// More than twice what rounding may do to a place in a body of this size [m], anywhere in the box: half a unit
+/// in the last place of each coordinate of a vertex, turned; and what a rotation and its transpose are off of
+/// being inverse.
+double grain_of(const Box& box, double size) {
+    double farthest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::abs(box.min[axis]), std::abs(box.max[axis])});
+    const double rounding = std::numeric_limits<double>::epsilon() * (4 * farthest + 16 * size);
+    return std::exp2(std::ceil(std::log2(rounding)));
+}
 
 /// The volume of the part of the box within `reach` of a point, by axes [m^3].
 double volume_within(const Box& box, const Vec3& x, double reach) {
@@ -67,7 +88,7 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
         const Shape from = shape_at(body, t0);
         const double size = std::max({from.semi_axes.x, from.semi_axes.y, from.semi_axes.z});
         const double reach = reach_of(from, domain);
-        result.push_back({from, shape_at(body, t1), reach, reach + size});
+        result.push_back({from, shape_at(body, t1), reach, reach + size, grain_of(domain.box, size)});
     }
     return result;
 }
@@ -177,7 +198,7 @@ void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Trav
         for (Vertex v : bodies[i]) {
             zone.bodies.push_back(v);
             zone.moves[v] = Zone::with_body;
-            zone.place[v] = mesh.position[v] + travels[i].displacement(mesh.position[v]);
+            zone.place[v] = travels[i].taken_along(mesh.position[v]);
         }
     for (const PrismLayer& layer : mesh.layers) {
         std::vector<Vec3> wall;

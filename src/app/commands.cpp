@@ -1,6 +1,7 @@
 // The command line: CLI11 reads it; every exception ends here, as one line and an exit code.
 #include "app/commands.h"
 
+#include "app/body_sizes.h"
 #include "app/check.h"
 #include "app/initial_mesh.h"
 #include "app/interrupt.h"
@@ -49,6 +50,7 @@ int write_initial_mesh(const MeshOptions& options) {
     fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
                options.out.string(), quality.tets, quality.vertices, quality.max_aspect_ratio,
                quality.min_dihedral, quality.max_dihedral);
+    fmt::print("{}", describe(body_sizes(it.domain, mesh)));
     return done;
 }
 

@@ -1,5 +1,6 @@
 #include "app/run_output.h"
 
+#include "app/body_sizes.h"
 #include "app/run_folder.h"
 #include "base/error.h"
 #include "io/file.h"
@@ -48,6 +49,7 @@ void RunOutput::start(const State& state) {
     std::filesystem::create_directories(folder_ / "frames", trouble);
     if (trouble) throw FileError(fmt::format("{}: cannot be made: {}", folder_.string(), trouble.message()));
     write_file(folder_ / "case.toml", to_toml(it_));
+    write_body_sizes(folder_ / "bodies.csv", body_sizes(it_.domain, state.moving.reference()));
     table_.emplace(folder_ / "steps.csv", conserved(it_));
     write_frame(0, state);
 }

@@ -89,9 +89,14 @@ struct Snapshot {
 /// The target edge length at x [m]: the least that SizeField gives for a body at its surface_size.
 [[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
 
+/// How far at most the vertices of a body's surface stand outside of its shape [m], so that the polyhedron has
+/// the body's volume (generate.h), at triangles of edge length `size` [m].
+[[nodiscard]] double outward_shift(const Shape& shape, double size);
+
 /// Throws DomainError, saying which bodies, where, the distance found and the size that would do, if at time
 /// t a body is outside the box, or two bodies overlap, or a gap is too narrow for the size asked (below
-/// `least_gap` surface sizes), or the surface size is too coarse for a body's curvature.
+/// `least_gap` surface sizes, to which comes how far the bodies' polyhedra stand out of their shapes), or the
+/// surface size is too coarse for a body's curvature.
 void check_placement(const Domain& domain, double t, double least_gap);
 
 /// The thickness [m] of the largest layer that is not squeezed anywhere, at time t: a third of the least gap

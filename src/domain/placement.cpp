@@ -67,22 +67,36 @@ void check_curvature(const Body& body, const Shape& shape, double surface_size) 
                       size_advice(surface_size, least_radius));
 }
 
-void check_wall_gap(const Body& body, const Shape& shape, const Domain& domain, double least_gap) {
-    const WallGap w = narrowest_wall_gap(domain.box, shape);
+/// The gap that is needed beside bodies [m]: `least_gap` surface sizes between their polyhedra.
+struct NeededGap {
+    double least_gap;     // [sizes]
+    double surface_size;  // [m]
+    double shift;         // [m] how far the polyhedra stand out of the shapes, together
+
+    [[nodiscard]] double width() const { return least_gap * surface_size + shift; }
+    /// The largest surface size for which `gap` would do; the shift grows with its square.
+    [[nodiscard]] double size_for(double gap) const {
+        const double per_square = shift / (surface_size * surface_size);
+        return 2 * gap / (least_gap + std::sqrt(least_gap * least_gap + 4 * per_square * gap));
+    }
+};
+
+void check_wall_gap(const Body& body, const Shape& shape, const Box& box, const NeededGap& needed) {
+    const WallGap w = narrowest_wall_gap(box, shape);
     if (w.gap() < 0) throw DomainError(named(body) + " is not inside the box: " + overstep(w));
-    if (w.gap() >= least_gap * domain.size.surface) return;
+    if (w.gap() >= needed.width()) return;
     const std::string wall = std::string("the wall ") + "xyz"[w.axis] + (w.at_min ? " min" : " max");
     if (w.gap() == 0) throw DomainError(named(body) + " touches " + wall);
     throw DomainError(named(body) + " is " + metres(w.gap()) + " from " + wall + ", too close" +
-                      size_advice(domain.size.surface, w.gap() / least_gap));
+                      size_advice(needed.surface_size, needed.size_for(w.gap())));
 }
 
-void check_gap(const Body& a, const Body& b, double gap, double surface_size, double least_gap) {
-    if (gap >= least_gap * surface_size && gap > 0) return;
+void check_gap(const Body& a, const Body& b, double gap, const NeededGap& needed) {
+    if (gap >= needed.width() && gap > 0) return;
     const std::string both = named(a) + " and " + named(b);
     if (gap == 0) throw DomainError(both + " overlap");
     throw DomainError(both + " are " + metres(gap) + " apart, too close" +
-                      size_advice(surface_size, gap / least_gap));
+                      size_advice(needed.surface_size, needed.size_for(gap)));
 }
 
 bool is_finite(const Pose& pose) {
@@ -110,14 +124,17 @@ std::vector<Shape> shapes_on_path(const Domain& domain, double t) {
 void check_placement(const Domain& domain, double t, double least_gap) {
     assert(domain.size.surface > 0 && domain.size.far >= domain.size.surface && domain.size.growth >= 0);
     const Snapshot at = snapshot(domain, t);
+    std::vector<double> shifts;
     for (std::size_t i = 0; i < at.shapes.size(); ++i) {
         assert(is_finite(at.shapes[i].centre) && at.shapes[i].semi_axes.x > 0 &&
                at.shapes[i].semi_axes.y > 0 && at.shapes[i].semi_axes.z > 0);
-        check_wall_gap(domain.bodies[i], at.shapes[i], domain, least_gap);
         check_curvature(domain.bodies[i], at.shapes[i], domain.size.surface);
+        shifts.push_back(outward_shift(at.shapes[i], surface_size(at, i)));
+        check_wall_gap(domain.bodies[i], at.shapes[i], domain.box,
+                       {least_gap, domain.size.surface, shifts[i]});
         for (std::size_t j = 0; j < i; ++j)
             check_gap(domain.bodies[j], domain.bodies[i], gap_between(at.shapes[j], at.shapes[i]),
-                      domain.size.surface, least_gap);
+                      {least_gap, domain.size.surface, shifts[i] + shifts[j]});
     }
 }
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace kropla {
 
@@ -95,6 +96,16 @@ Vec3 closest_on_sphere(const Shape& sphere, const Vec3& x) {
 }
 
 }  // namespace
+
+double volume(const Shape& shape) {
+    return 4 * std::numbers::pi / 3 * shape.semi_axes.x * shape.semi_axes.y * shape.semi_axes.z;
+}
+
+Shape through(const Shape& shape, const Vec3& x) {
+    const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
+    const Vec3& a = shape.semi_axes;
+    return {shape.centre, norm({p.x / a.x, p.y / a.y, p.z / a.z}) * a, shape.orientation};
+}
 
 double signed_distance(const Shape& shape, const Vec3& x) {
     if (is_sphere(shape)) return distance(x, shape.centre) - shape.semi_axes.x;

@@ -38,6 +38,10 @@ struct Shape {
 /// A point of the body, given where it was at the start.
 [[nodiscard]] Vec3 placed(const Shape& start, const Pose& pose, const Vec3& at_start);
 
+/// The volume inside [m^3].
+[[nodiscard]] double volume(const Shape& shape);
+/// The shape blown up, or shrunk, about its centre until `x`, which is not the centre, is on its surface.
+[[nodiscard]] Shape through(const Shape& shape, const Vec3& x);
 /// The distance from `x` to the surface [m], negative inside. Exact to rounding.
 [[nodiscard]] double signed_distance(const Shape& shape, const Vec3& x);
 /// The point of the surface nearest to `x`.

@@ -28,8 +28,16 @@ struct Surface {
     std::vector<Vec3> points;
     std::vector<std::array<int, 3>> triangles;
 };
-/// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]; vertices lie on
-/// it.
+/// The volume inside a closed surface [m^3]; the sum over its triangles is compensated [Neumaier 1974], so that
+/// it is right to rounding, whatever their number. `inside` is a point in it.
+[[nodiscard]] double enclosed_volume(const Surface& surface, const Vec3& inside);
+/// Scales a surface around a shape's centre about it, until the polyhedron holds the shape's volume.
+void give_volume(Surface& surface, const Shape& shape);
+
+/// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]. The polyhedron
+/// holds the shape's volume to rounding: its vertices lie on the shape blown up about its centre,
+/// `outward_shift` (domain.h) away from its surface at most, and that surface runs between them and the
+/// triangles' middles.
 [[nodiscard]] Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed,
                                           const Watch* watch = nullptr);
 

@@ -14,6 +14,12 @@ namespace {
 
 std::size_t body_of(const PrismLayer& layer) { return static_cast<std::size_t>(layer.body.value) - 1; }
 
+/// The point of the body's surface that is meant by a vertex of its wall, which stands somewhat out of it: gaps
+/// and rooms are the body's, whatever its triangles.
+Vec3 meant_by(const Vec3& wall_vertex, std::size_t body, const Snapshot& at) {
+    return closest_point(at.shapes[body], wall_vertex);
+}
+
 }  // namespace
 
 std::vector<Vec3> column_places(const PrismLayer& layer, std::span<const Vec3> wall, const Snapshot& at) {
@@ -26,7 +32,7 @@ std::vector<Vec3> column_places(const PrismLayer& layer, std::span<const Vec3> w
     std::vector<Vec3> places;
     places.reserve(wall.size() * static_cast<std::size_t>(layer.count + 1));
     for (std::size_t column = 0; column < wall.size(); ++column) {
-        const double factor = layer_thickness(at, body, inside, wall[column]) / full;
+        const double factor = layer_thickness(at, body, inside, meant_by(wall[column], body, at)) / full;
         double above = 0, height = factor * options->first_height;
         places.push_back(wall[column]);
         for (int k = 0; k < layer.count; ++k, height *= options->growth) {
@@ -50,7 +56,8 @@ std::optional<NarrowestGap> narrowest_gap(const Mesh& mesh, const Snapshot& at) 
         const std::size_t body = body_of(layer);
         if (layer.region == layer.body) continue;
         const double allowed = least_gap(*at.layers[body]);
-        for (const Vec3& x : wall_places(mesh, layer)) {
+        for (const Vec3& vertex : wall_places(mesh, layer)) {
+            const Vec3 x = meant_by(vertex, body, at);
             const Gap gap = nearest_gap(at, body, x);
             if (!narrowest || gap.distance / allowed < narrowest->distance / narrowest->allowed)
                 narrowest = {body, gap.distance, allowed, x, gap.wall, gap.body};

@@ -24,7 +24,7 @@ namespace kropla {
 [[nodiscard]] std::vector<Vec3> wall_places(const Mesh& mesh, const PrismLayer& layer);
 
 /// Where the gap between a layered body and a wall or another body is the least part of the body's least_gap,
-/// seen from the wall's vertices. Nothing without a layer outside a body.
+/// seen from the points of its surface at the wall's vertices. Nothing without a layer outside a body.
 struct NarrowestGap {
     std::size_t body;
     double distance;  // [m]

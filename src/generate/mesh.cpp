@@ -6,7 +6,8 @@
 //
 // Where a triangle of a surface is not a facet, points in its diametral sphere are removed; where that does
 // not do, an edge of it is split, as in [Shewchuk 1998, "Tetrahedral mesh generation by Delaunay
-// refinement"], with the new point on the body's surface, and the columns are set up anew.
+// refinement"], with the new point on the body's surface; the surface is scaled to the body's volume again,
+// and the columns are set up anew.
 
 #include "base/error.h"
 #include "domain/layer_room.h"
@@ -94,18 +95,21 @@ struct FilledRoom {
 /// Splits the longest edges of `triangles` of the body's wall, and frees the space around the new points.
 void refine_wall(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles,
                  const Snapshot& at) {
-    Skin skin = make_skin(draft.walls[body], at.shapes[body].centre);
+    Surface& wall = draft.walls[body];
+    const Shape on_wall = through(at.shapes[body], wall.points.front());
+    Skin skin = make_skin(wall, on_wall.centre);
     const Skin before = skin;
     for (std::size_t i : triangles) {
         const Triangle triangle(i);
         if (skin.triangles[triangle] != before.triangles[triangle])
             continue;  // split from across an edge of it
-        const Vertex added = split_longest_edge(skin, at.shapes[body], triangle);
+        const Vertex added = split_longest_edge(skin, on_wall, triangle);
         const double half_edge = distance(skin.points[added], skin.points[skin.triangles[triangle][0]]);
         for (auto& others : draft.others) clear_sphere(others, at.box, {skin.points[added], half_edge});
     }
     flip_edges(skin);
-    draft.walls[body] = surface_of(skin);
+    wall = surface_of(skin);
+    give_volume(wall, at.shapes[body]);
 }
 
 /// Makes room for the triangles of the room's surfaces that were not found.

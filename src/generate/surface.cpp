@@ -2,7 +2,8 @@
 //
 // As many points as the area asks for are scattered by relaxed dart throwing [McCool, Fiume 1992,
 // "Hierarchical Poisson disk sampling distributions"] and joined by the hull of them all; then the skin is
-// relaxed (skin.cpp).
+// relaxed (skin.cpp), and at last scaled: a polyhedron inscribed in an ellipsoid lacks a part of its volume,
+// and a similar one keeps the shapes of all triangles.
 
 #include "base/random.h"
 #include "generate/generate.h"
@@ -88,6 +89,22 @@ Surface hull(const std::vector<Vec3>& points, const Vec3& inside, const Watch* w
 
 }  // namespace
 
+double enclosed_volume(const Surface& surface, const Vec3& inside) {
+    double sum = 0, lost = 0;
+    for (const auto& [i, j, k] : surface.triangles) {
+        const auto place = [&](int p) { return surface.points[static_cast<std::size_t>(p)] - inside; };
+        const double part = determinant(place(i), place(j), place(k)) / 6, next = sum + part;
+        lost += std::abs(sum) >= std::abs(part) ? (sum - next) + part : (part - next) + sum;
+        sum = next;
+    }
+    return sum + lost;
+}
+
+void give_volume(Surface& surface, const Shape& shape) {
+    const double factor = std::cbrt(volume(shape) / enclosed_volume(surface, shape.centre));
+    for (Vec3& x : surface.points) x = shape.centre + factor * (x - shape.centre);
+}
+
 Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed, const Watch* watch) {
     assert(size > 0 && size <= least_curvature_radius(shape));
     // Equilateral triangles of edge h have 0.866 h^2 of area per vertex.
@@ -96,7 +113,9 @@ Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed,
     const std::vector<Vec3> points = scatter(shape, static_cast<int>(std::lround(wanted)), size, random, watch);
     Skin skin = make_skin(hull(points, shape.centre, watch), shape.centre);
     relax_skin(skin, shape, watch);
-    return surface_of(skin);
+    Surface surface = surface_of(skin);
+    give_volume(surface, shape);
+    return surface;
 }
 
 }  // namespace kropla

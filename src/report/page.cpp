@@ -126,6 +126,31 @@ std::string draw_head(const RunFiles& run, const RunSummary& s) {
            tile("transfer", readable_time(s.transfer_seconds)) + "</div>";
 }
 
+std::string table_row(const char* cell, std::initializer_list<std::string> values) {
+    std::string html = "<tr>";
+    for (const std::string& value : values) html += std::string("<") + cell + ">" + value + "</" + cell + ">";
+    return html + "</tr>";
+}
+
+/// The sizes of the bodies, as asked for and as the mesh has them.
+std::string draw_bodies(const RunFiles& run) {
+    if (!run.bodies || run.bodies->rows == 0) return {};
+    const auto of = [&](const char* column) { return numbers(*run.bodies, column); };
+    const auto body = of("body"), a = of("semi_axis_1"), b = of("semi_axis_2"), c = of("semi_axis_3"),
+               volume = of("volume"), of_mesh = of("mesh_volume"), triangles = of("triangles"),
+               edge = of("mean_edge");
+    std::string html = "<section><h2>Bodies</h2><table>" +
+                       table_row("th", {"body", "semi-axes [m]", "volume [m³]", "volume of the mesh",
+                                        "triangles", "their mean edge [m]"});
+    for (std::size_t i = 0; i < body.size(); ++i) {
+        const std::string axes = readable(a[i]) + ", " + readable(b[i]) + ", " + readable(c[i]),
+                          off = "off by " + readable(of_mesh[i] / volume[i] - 1, 1) + " of it";
+        html += table_row("td", {readable_count(body[i]), axes, readable(volume[i], 6), off,
+                                 readable_count(triangles[i]), readable(edge[i], 3)});
+    }
+    return html + "</table></section>\n";
+}
+
 std::string draw_figures(const RunFiles& run, const RunSummary& summary) {
     std::string html = "<section><h2>Figures</h2><table>";
     for (const auto& [name, value] : figures(run, summary)) {
@@ -145,7 +170,8 @@ void write_report(const std::filesystem::path& dir) {
         escaped(run.name) + " – Kropla</title><style>" + std::string(page_style) +
         "</style></head>\n<body><main>";
     html += draw_head(run, summary) + '\n' + draw_charts(run, summary) + '\n' + draw_cuts(run) + '\n';
-    html += draw_figures(run, summary) + "\n<section><h2>The case</h2><pre>" + escaped(run.case_text) +
+    html += draw_bodies(run) + draw_figures(run, summary);
+    html += "\n<section><h2>The case</h2><pre>" + escaped(run.case_text) +
             "</pre></section>\n<p class=\"soft\">Drawn from the files of the run; <code>kropla report</code> "
             "draws it "
             "again.</p></main></body></html>\n";

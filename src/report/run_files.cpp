@@ -27,7 +27,9 @@ RunFiles read_run_files(const std::filesystem::path& dir) {
                  .name = folder_name(dir),
                  .case_text = read_file(dir / "case.toml"),
                  .steps = read_table(dir / "steps.csv"),
+                 .bodies = {},
                  .frames = read_pvd(dir / "frames.pvd")};
+    if (std::filesystem::exists(dir / "bodies.csv")) run.bodies = read_table(dir / "bodies.csv");
     std::ranges::stable_sort(run.frames, {}, &SeriesEntry::time);
     return run;
 }

@@ -17,11 +17,12 @@ struct RunFiles {
     std::string name;  // of the folder
     std::string case_text;
     Table steps;
+    std::optional<Table> bodies;      // their sizes; runs of older versions have none
     std::vector<SeriesEntry> frames;  // by time
 };
 
-/// Reads DIR/case.toml, steps.csv and frames.pvd. Throws FileError, naming the file, if one is missing or
-/// broken.
+/// Reads DIR/case.toml, steps.csv, bodies.csv where it is there, and frames.pvd. Throws FileError, naming the
+/// file, if another is missing or one is broken.
 [[nodiscard]] RunFiles read_run_files(const std::filesystem::path& dir);
 
 /// The number that stands as `key` in the table `[section]` of a case as run; nothing if there is none. It

@@ -67,6 +67,7 @@ path.limit { stroke: var(--limit); stroke-width: 1.6; stroke-dasharray: 6 4; }
 .p4 { fill: var(--r4); fill-opacity: .55; }
 table { border-collapse: collapse; width: 100%; } td { padding: 5px 10px 5px 0;
   border-bottom: 1px solid var(--rule); }
+th { padding: 5px 10px 5px 0; text-align: left; font-weight: 600; }
 td:first-child { color: var(--soft); white-space: nowrap; width: 16em; }
 pre { background: var(--card); border: 1px solid var(--rule); border-radius: 8px; padding: 14px 16px;
   overflow-x: auto;

@@ -90,7 +90,10 @@ TEST(Placement, RefusesBodiesTooCloseOrOverlapping) {
     EXPECT_EQ(
         placement(domain),
         "body \"droplet\" and body \"drop2\" are 0.0625 m apart, too close for size.surface = 0.2 m; at most "
-        "0.12 m would do");
+        "0.11 m would do");  // 0.5 h + 2 * 0.15 h^2 = 0.0625
+    domain.size.surface = 0.11;
+    EXPECT_EQ(placement(domain), "");
+    domain.size.surface = 0.2;
     domain.bodies[1].shape.centre.z = 11.5;
     EXPECT_EQ(placement(domain), "body \"droplet\" and body \"drop2\" overlap");
     domain.bodies[1].shape = ball({0, 0.2, 13}, 0.3);  // one within the other
@@ -123,9 +126,11 @@ TEST(Placement, FindsTheDistanceOfEllipsoids) {
         const double gap = 0.01;
         b.centre += extreme(a, to) + gap * to - extreme(b, -to);
         domain.bodies = {body("a", a), body("b", b)};
-        domain.size.surface = 0.02;
-        EXPECT_EQ(refusal([&] { check_placement(domain, 0, 0.499); }), "");
-        EXPECT_NE(refusal([&] { check_placement(domain, 0, 0.501); }).find("are 0.01 m apart"),
+        const double size = 0.02;
+        domain.size.surface = size;
+        const double sizes = (gap - outward_shift(a, size) - outward_shift(b, size)) / size;
+        EXPECT_EQ(refusal([&] { check_placement(domain, 0, sizes - 0.001); }), "");
+        EXPECT_NE(refusal([&] { check_placement(domain, 0, sizes + 0.001); }).find("are 0.01 m apart"),
                   std::string::npos);
         domain.bodies[1].shape.centre -= 1.001 * gap * to;
         EXPECT_EQ(refusal([&] { check_placement(domain, 0, 0.501); }), "body \"a\" and body \"b\" overlap");

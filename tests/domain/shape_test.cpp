@@ -59,6 +59,21 @@ TEST(Shape, APlacedPointKeepsItsPlaceInTheBody) {
     }
 }
 
+TEST(Shape, IsBlownUpToPassThroughAPoint) {
+    Random random{5};
+    for (int i = 0; i < 100; ++i) {
+        const Shape shape = random_ellipsoid(random);
+        const Vec3 x = shape.centre + random_vector(random, 2);
+        const Shape other = through(shape, x);
+        EXPECT_NEAR(signed_distance(other, x), 0, 1e-13);
+        EXPECT_EQ(other.centre, shape.centre);
+        const double factor = other.semi_axes.x / shape.semi_axes.x;
+        EXPECT_LE(distance(other.semi_axes, factor * shape.semi_axes), 1e-14 * factor);
+        EXPECT_NEAR(std::cbrt(volume(other) / volume(shape)), factor, 1e-14 * factor);
+    }
+    EXPECT_DOUBLE_EQ(volume(ball({1, 2, 3}, 2)), 32 * std::numbers::pi / 3);
+}
+
 TEST(Shape, ClosestPointIsOnTheSurfaceAndSeenAlongTheNormal) {
     Random random{3};
     for (int i = 0; i < 20000; ++i) {

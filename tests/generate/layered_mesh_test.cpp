@@ -63,9 +63,11 @@ void expect_layered_mesh(const Domain& domain, const Mesh& mesh, bool roomy) {
         const auto body = static_cast<std::size_t>(layer.body.value) - 1;
         const Shape shape = shape_at(domain.bodies[body], 0);
         const LayerOptions& asked = *domain.bodies[body].layer;
+        EXPECT_NEAR(region_volume(mesh, layer.body) / volume(shape), 1, 1e-12);
+        const Shape larger = through(shape, mesh.position[column_vertex(layer, 0, 0)]);
         for (int column = 0; column < count_columns(layer); ++column) {
             const Vec3& wall = mesh.position[column_vertex(layer, column, 0)];
-            EXPECT_NEAR(signed_distance(shape, wall) / shape.semi_axes.x, 0, 1e-12);
+            EXPECT_NEAR(signed_distance(larger, wall) / shape.semi_axes.x, 0, 1e-12);
         }
         const LayerSummary summary = summarise_layer(mesh, Layer(l));
         EXPECT_GE(summary.min_jacobian, roomy ? 0.3 : 0.1);

@@ -51,7 +51,8 @@ TEST(Columns, AreOfTheHeightsAskedWhereThereIsRoom) {
             const auto h = heights(*stacks, c);
             for (std::size_t k = 0; k < 3; ++k)
                 EXPECT_NEAR(h[k] / (0.1 * std::pow(1.25, static_cast<double>(k))), 1, 1e-12);
-            const double out = distance(stacks->places[4 * c + 3], at.shapes[0].centre) - 1;
+            const Vec3& centre = at.shapes[0].centre;
+            const double out = distance(stacks->places[4 * c + 3], centre) - distance(wall.points[c], centre);
             EXPECT_NEAR(out, (inside ? -1 : 1) * total(h), 0.01);  // along the normal
         }
     }
@@ -70,7 +71,8 @@ TEST(Columns, AreThinnedByGapsAndGraded) {
         EXPECT_NEAR(h[1] / h[0], 1.25, 1e-12);
         EXPECT_NEAR(h[2] / h[1], 1.25, 1e-12);
         thick.push_back(total(h));
-        EXPECT_LE(thick.back(), wall.points[c].z / 3 + 1e-12);  // a third of the gap at most
+        const Vec3 on_body = closest_point(at.shapes[0], wall.points[c]);
+        EXPECT_LE(thick.back(), on_body.z / 3 + 1e-12);  // a third of the body's gap at most
     }
     EXPECT_NEAR(*std::ranges::min_element(thick), gap / 3, 0.01);
     EXPECT_NEAR(*std::ranges::max_element(thick), 0.38125, 1e-12);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 using namespace kropla;
@@ -59,13 +60,16 @@ void expect_initial_mesh(const Domain& domain, const Mesh& mesh) {
         const Region region = region_of_body(body);
         const double volume = region_volume(mesh, region);
         EXPECT_NEAR(enclosed_volume(mesh, region, shape.centre) / volume, 1, 1e-12);
-        const double full = 4.18879 * shape.semi_axes.x * shape.semi_axes.y * shape.semi_axes.z;
-        EXPECT_GT(volume, 0.6 * full);  // what 15 points on a sphere enclose
-        EXPECT_LT(volume, full);
+        const Vec3& a = shape.semi_axes;
+        EXPECT_NEAR(volume / (4 * std::numbers::pi / 3 * a.x * a.y * a.z), 1, 1e-12);
         const std::set<Vertex> on_surface = interface_vertices(mesh, region);
-        EXPECT_FALSE(on_surface.empty());
-        for (Vertex v : on_surface)
-            EXPECT_NEAR(signed_distance(shape, mesh.position[v]) / shape.semi_axes.x, 0, 1e-12);
+        ASSERT_FALSE(on_surface.empty());
+        const Shape larger = through(shape, mesh.position[*on_surface.begin()]);
+        for (Vertex v : on_surface) {
+            EXPECT_NEAR(signed_distance(larger, mesh.position[v]) / a.x, 0, 1e-12);
+            EXPECT_GT(signed_distance(shape, mesh.position[v]), 0);
+            EXPECT_LT(signed_distance(shape, mesh.position[v]), outward_shift(shape, domain.size.surface));
+        }
     }
     for (Tet t : mesh.tets.indices())
         for (std::size_t i = 0; i < 4; ++i) {
@@ -121,9 +125,11 @@ TEST(InitialMesh, OfALongThinBody) {
 }
 
 TEST(InitialMesh, RefinesSurfacesThatAreAsCloseAsIsAllowed) {
-    const double gap = 0.251 * 0.4;                                              // of the surface size
+    const Shape large = ball({0, 0, 0}, 1), small = ball({0, 0, 0}, 0.6);
+    const double size = 0.4, out = outward_shift(large, size), small_out = outward_shift(small, size);
+    const double gap = 0.251 * size + out, between = gap + small_out;
     const Domain domain = small_domain({ball({-2 + gap, -2 + gap, 1 + gap}, 1),  // in a corner of the box
-                                        ball({-2 + gap, -2 + gap, 2 + 2 * gap + 0.6}, 0.6)});
+                                        ball({-2 + gap, -2 + gap, 2 + gap + between + 0.6}, 0.6)});
     int refined = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));

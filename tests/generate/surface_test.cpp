@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -51,7 +52,7 @@ bool is_closed_sphere(const Surface& surface) {
     return mutual && surface.points.size() + surface.triangles.size() == edges.size() / 2 + 2;
 }
 
-double enclosed_volume(const Surface& surface, const Vec3& about) {
+double signed_volume(const Surface& surface, const Vec3& about) {
     double sum = 0;
     for (const auto& [i, j, k] : surface.triangles) {
         const auto place = [&](int p) { return surface.points[static_cast<std::size_t>(p)] - about; };
@@ -86,13 +87,37 @@ TEST(Surface, TrianglesAreWellShapedAndOfTheSizeAsked) {
         }
 }
 
-TEST(Surface, PointsLieOnTheShapeAndTrianglesFaceOut) {
-    const Shape shape = turned_ellipsoid({1, 2, 3}, {1, 2, 1.5});
-    const Surface surface = triangulate_surface(shape, 0.3, 5);
-    for (const Vec3& x : surface.points) EXPECT_NEAR(signed_distance(shape, x), 0, 1e-14);
-    const double share = enclosed_volume(surface, shape.centre) / volume_of(shape);
-    EXPECT_LT(share, 1);     // chords lie inside,
-    EXPECT_GT(share, 0.97);  // by about size^2 / (4 radius^2) at each place
+TEST(Surface, HoldsTheVolumeOfItsShape) {
+    // Round, long, flat, with three axes, nearly round; from a size equal to the least radius of curvature on.
+    const std::array axes_of = {Vec3{1, 1, 1}, Vec3{1, 1, 3}, Vec3{1, 3, 3}, Vec3{1, 1.5, 2}, Vec3{1, 1 + 1e-9, 1}};
+    for (const Vec3& axes : axes_of)
+        for (const double fineness : {1.0, 1.5, 2.0, 4.0})
+            for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+                const Shape shape = turned_ellipsoid({3, -2, 1}, axes);
+                const double size = least_curvature_radius(shape) / fineness;
+                SCOPED_TRACE("axes " + std::to_string(axes.y) + " " + std::to_string(axes.z) + ", size " +
+                             std::to_string(size) + ", seed " + std::to_string(seed));
+                const Surface surface = triangulate_surface(shape, size, seed);
+                EXPECT_NEAR(signed_volume(surface, shape.centre) / volume_of(shape), 1, 1e-14);
+                // So its points lie on one larger ellipsoid, no farther out than is said.
+                const Shape larger = through(shape, surface.points.front());
+                for (const Vec3& x : surface.points) {
+                    ASSERT_NEAR(signed_distance(larger, x), 0, 1e-14);
+                    ASSERT_GT(signed_distance(shape, x), 0);
+                    ASSERT_LT(signed_distance(shape, x), outward_shift(shape, size));
+                }
+            }
+}
+
+TEST(Surface, ItsVolumeIsSummedRightToRounding) {
+    const Shape shape = ball({1e6, -1e6, 1e6}, 1024);  // all products of the sum are far apart in size
+    Surface surface = triangulate_surface(shape, 60, 1);
+    long double sum = 0;
+    for (const auto& [i, j, k] : surface.triangles) {
+        const auto place = [&](int p) { return surface.points[static_cast<std::size_t>(p)] - shape.centre; };
+        sum += static_cast<long double>(determinant(place(i), place(j), place(k)) / 6);
+    }
+    EXPECT_NEAR(enclosed_volume(surface, shape.centre) / static_cast<double>(sum), 1, 3e-16);
 }
 
 TEST(Surface, HasThePointsThatItsAreaAsksFor) {

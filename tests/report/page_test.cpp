@@ -53,6 +53,17 @@ TEST(Page, ShowsAFinishedRun) {
     EXPECT_EQ(std::distance(std::sregex_iterator(html.begin(), html.end(), cells), {}), 6);
 }
 
+TEST(Page, ShowsTheSizesOfBodies) {
+    const std::string html = page_of({});
+    EXPECT_NE(html.find("<h2>Bodies</h2>"), std::string::npos);
+    EXPECT_NE(html.find("<tr><td>1</td><td>1, 2, 1.25</td><td>10.472</td><td>off by 1e-08 of it</td><td>48</td>"
+                        "<td>1.14</td></tr>"),
+              std::string::npos);
+    const std::string older = page_of({.bodies = false});
+    expect_sound(older);
+    EXPECT_EQ(older.find("<h2>Bodies</h2>"), std::string::npos);
+}
+
 TEST(Page, ShowsARunWithoutHeat) {
     const std::string html = page_of({.heat = false});
     expect_sound(html);

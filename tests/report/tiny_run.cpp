@@ -55,6 +55,10 @@ void write_tiny_run(const std::filesystem::path& dir, const TinyRun& run) {
     write_file(dir / "case.toml",
                "[quality]\nmax_aspect_ratio = 10\n\n[time]\nend = 0.5\nsteps = 5  # a < b & c\n");
     write_file(dir / "steps.csv", run.steps.empty() ? steps_of(run) : run.steps);
+    if (run.bodies)
+        write_file(dir / "bodies.csv",
+                   "body,semi_axis_1 [m],semi_axis_2 [m],semi_axis_3 [m],volume [m^3],mesh_volume [m^3],triangles,"
+                   "mean_edge [m]\n1,1,2,1.25,10.4719755,10.4719756,48,1.138\n");
     std::vector<SeriesEntry> entries;
     for (int step = 0; step <= run.rows; ++step) {
         const int height = 9 - step;

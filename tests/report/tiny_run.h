@@ -45,6 +45,7 @@ struct TinyRun {
     bool heat = true;        // frames with a temperature, steps with an energy
     double worst = 8.5;      // R/r of step 3
     std::string steps = {};  // instead of rows: the whole steps.csv
+    bool bodies = true;      // bodies.csv is there
 };
 
 /// Leaves in `dir`, which is emptied, what a run of a body of two cubes falling through a box of 6 x 6 x 12

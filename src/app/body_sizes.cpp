@@ -1,0 +1,57 @@
+#include "app/body_sizes.h"
+
+#include "io/file.h"
+#include "mesh/quality.h"
+#include "simulate/cells.h"
+
+#include <fmt/format.h>
+
+namespace kropla {
+namespace {
+
+double mean_edge(const Mesh& mesh, const std::vector<std::array<Vertex, 3>>& triangles) {
+    double sum = 0;
+    for (const auto& [a, b, c] : triangles)
+        sum += distance(mesh.position[a], mesh.position[b]) + distance(mesh.position[b], mesh.position[c]) +
+               distance(mesh.position[c], mesh.position[a]);
+    return triangles.empty() ? 0 : sum / (3.0 * static_cast<double>(triangles.size()));
+}
+
+}  // namespace
+
+std::vector<BodySize> body_sizes(const Domain& domain, const Mesh& mesh) {
+    std::vector<BodySize> sizes;
+    for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
+        const auto& [name, shape, motion, layer] = domain.bodies[body];
+        const auto triangles = region_surface(mesh, region_of_body(body)).interface;
+        sizes.push_back({name, shape.semi_axes, volume(shape), region_volume(mesh, region_of_body(body)),
+                         static_cast<int>(triangles.size()), mean_edge(mesh, triangles)});
+    }
+    return sizes;
+}
+
+std::string describe(const std::vector<BodySize>& sizes) {
+    constexpr std::size_t most = 8;  // as many as stand on a screen beside what else is said
+    std::string text;
+    for (const BodySize& s : sizes) {
+        if (static_cast<std::size_t>(&s - sizes.data()) == most)
+            return text + fmt::format("and {} bodies more\n", sizes.size() - most);
+        text += fmt::format("body \"{}\": semi-axes {:.4g}, {:.4g}, {:.4g} m; volume {:.6g} m^3, the mesh's off by "
+                            "{:.0e} of it; {} triangles of edge {:.3g} m\n",
+                            s.name, s.semi_axes.x, s.semi_axes.y, s.semi_axes.z, s.volume,
+                            s.mesh_volume / s.volume - 1, s.triangles, s.mean_edge);
+    }
+    return text;
+}
+
+void write_body_sizes(const std::filesystem::path& path, const std::vector<BodySize>& sizes) {
+    std::string text =
+        "body,semi_axis_1 [m],semi_axis_2 [m],semi_axis_3 [m],volume [m^3],mesh_volume [m^3],triangles,mean_edge [m]\n";
+    int body = 0;
+    for (const BodySize& s : sizes)
+        text += fmt::format("{},{},{},{},{},{},{},{}\n", ++body, s.semi_axes.x, s.semi_axes.y, s.semi_axes.z, s.volume,
+                            s.mesh_volume, s.triangles, s.mean_edge);
+    write_file(path, text);
+}
+
+}  // namespace kropla
