@@ -85,6 +85,7 @@ void MovingMesh::begin_step() {
     refined_.clear();
     way_ = {};
     stuck_.reset();
+    remeshed_ = false;
     statistics_ = {};
 }
 
@@ -227,41 +228,47 @@ std::optional<Refusal> MovingMesh::squeezed_prism() const {
 }
 
 void MovingMesh::refuse() {
+    if (remeshed_) return;  // it is not the mesh that stops the step
     if (const auto reason = refusal(); reason && reason->limiting.exists())
         trouble_.push_back(centroid(before_, reason->limiting));
 }
 
 Changes MovingMesh::remesh(const AdaptOptions& options) {
-    const Snapshot at_time = snapshot(domain_, time_);
-    Changes changes = adapt_to_size(reference_, zone_, at_time, options);
-    changes += swap_for_energy(reference_, cells_above(options.swap_above), options);
+    const Snapshot at_time = snapshot(domain_, target_time_);
+    Changes changes = adapt_to_size(current_, zone_, at_time, options);
+    changes += swap_for_energy(current_, cells_above(options.swap_above), options);
     std::vector<Tet> poor = cells_above(options.good_enough);
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
-    changes += improve(reference_, poor, at_time, options, changes.cells);
-    changes += repair(reference_, changes.cells, at_time, options);
+    changes += improve(current_, poor, at_time, options, changes.cells);
+    changes += repair(current_, changes.cells, at_time, options);
     return changes;
 }
 
-const Changes& MovingMesh::accept() {
-    time_ = target_time_;
-    std::swap(before_, current_);
-    copy_changed(reference_, before_, replaced_.list(), moved_);
-    trouble_.clear();
-
+const Changes& MovingMesh::remesh() {
+    copy_changed(before_, current_, {}, moved_);
+    remeshed_ = true;
     Changes& changes = statistics_.remeshed;
     AdaptOptions options = options_;
-    options.watch = nullptr;  // the reference cannot be taken back
+    options.watch = nullptr;  // all ranks have agreed on the step
     changes = remesh(options);
-    if (worst_aspect_ratio_of(reference_, changes.cells) > options_.floor) {
+    if (worst_aspect_ratio_of(current_, changes.cells) > options_.floor) {
         // What passed the floor on its way stayed there: taken back, and done again without passing it.
         note_replaced(changes);
-        copy_changed(reference_, before_, replaced_.list(), moved_);
+        copy_changed(current_, before_, replaced_.list(), moved_);
         options.passing = std::min(options.passing, options.floor);
         changes = remesh(options);
     }
     note_replaced(changes);
     statistics_.cells_touched = static_cast<int>(zone_.cells.size());
     return changes;
+}
+
+const Changes& MovingMesh::accept() {
+    if (!remeshed_) remesh();
+    copy_changed(reference_, current_, replaced_.list(), moved_);
+    time_ = target_time_;
+    trouble_.clear();
+    return statistics_.remeshed;
 }
 
 /// The cells that the step has made worse than `ratio`, or has left so.

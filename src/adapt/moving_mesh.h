@@ -29,6 +29,8 @@ struct StepStatistics {
 ///     moving.optimise();                      // 2.4
 ///     if (moving.refusal()) moving.refuse();  // the reference is as it was; the next refine() knows where it stuck
 ///     else moving.accept();                   // 2.6
+///
+/// Between the question and accept() stands remesh() where a step may still be refused after it.
 class MovingMesh {
 public:
     /// `mesh` is the mesh of `domain` at time `t` [s].
@@ -50,7 +52,7 @@ public:
     void optimise();
 
     /// The mesh of the step at its beginning and at its end: one connectivity, two sets of places. After
-    /// accept(), before() is the mesh at the end of the step, not yet remeshed.
+    /// remesh() and accept(), before() is the mesh at the end of the step, not yet remeshed.
     [[nodiscard]] const Mesh& before() const { return before_; }
     [[nodiscard]] const Mesh& current() const { return current_; }
 
@@ -59,15 +61,18 @@ public:
     void refuse();
     /// Drops the attempt under way, of which an exception may have left anything: the reference is as it was.
     void drop() { dropped_ = true; }
-    /// The current mesh becomes the reference and is remeshed where needed. The solution is to be carried
-    /// from before() to reference() at the vertices that are returned.
+    /// Remeshes the current mesh where needed; the reference is not touched. The solution is to be carried from
+    /// before() to current() at the vertices that are returned.
+    const Changes& remesh();
+    /// The current mesh, remeshed unless it is, becomes the reference. The solution is to be carried from before()
+    /// to reference() at the vertices that are returned.
     const Changes& accept();
 
 private:
     [[nodiscard]] std::optional<Refusal> narrow_gap() const;
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
-    Changes remesh(const AdaptOptions& options);  // the reference
+    Changes remesh(const AdaptOptions& options);  // the current mesh
     void move_in_legs();
     void note_turned_over(double reached);
     bool optimise_at(double t);
@@ -88,6 +93,7 @@ private:
     std::vector<Vec3> trouble_;      // where the attempts refused since the last accepted step got stuck
     std::optional<Refusal> stuck_;   // the motion did not arrive
     bool dropped_ = false;           // the other two meshes may differ from the reference anywhere
+    bool remeshed_ = false;          // the current mesh is
     StepStatistics statistics_;
 };
 

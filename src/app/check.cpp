@@ -1,14 +1,13 @@
 #include "app/check.h"
 
 #include "app/distribution.h"
-#include "app/hanging.h"
+#include "app/fault.h"
 #include "app/shell_jump.h"
 #include "base/error.h"
 #include "base/tetrahedron.h"
 #include "io/vtk.h"
 #include "mesh/prisms.h"
 #include "mesh/quality.h"
-#include "mesh/verify.h"
 
 #include <algorithm>
 #include <array>
@@ -73,8 +72,6 @@ Samples samples_of(const Mesh& mesh) {
     return samples;
 }
 
-std::string place(const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x, x.y, x.z); }
-
 /// Breaks a text into lines of at most 78 columns, indented by two.
 std::string wrapped(std::string_view text) {
     constexpr std::size_t width = 76;
@@ -86,18 +83,6 @@ std::string wrapped(std::string_view text) {
         text.remove_prefix(std::min(end + 1, text.size()));
     }
     return lines;
-}
-
-/// The first fault of the mesh, or nothing.
-std::string first_fault(const Mesh& mesh) {
-    if (auto fault = verify(mesh); !fault.empty()) return fault;
-    const auto hanging = hanging_vertex(mesh);
-    if (!hanging) return {};
-    return fmt::format(
-        "cell {} at {}: vertex {} at {} lies in its facet opposite corner {} without being one of its "
-        "corners",
-        hanging->facet.tet.value, place(centroid(mesh, hanging->facet.tet)), hanging->vertex.value,
-        place(mesh.position[hanging->vertex]), hanging->facet.corner);
 }
 
 std::size_t count_boundary_facets(const Mesh& mesh) {
@@ -196,7 +181,13 @@ std::string worst_cell(const Mesh& mesh, const Sample& all) {
     const auto largest = std::ranges::max_element(all.aspect);
     const Tet worst(static_cast<std::size_t>(largest - all.aspect.begin()));
     return fmt::format("\nworst cell: {} at {}, region {}, R/r {:.4g}\n", worst.value,
-                       place(centroid(mesh, worst)), mesh.region[worst].value, *largest);
+                       place_of(mesh, worst), mesh.region[worst].value, *largest);
+}
+
+std::string note_of(const FileCells& cells) {
+    if (cells.passed_over == 0) return {};
+    return wrapped(fmt::format("{} cells of surfaces, lines or points are passed over: cells are counted without them",
+                               cells.passed_over));
 }
 
 }  // namespace
@@ -204,6 +195,7 @@ std::string worst_cell(const Mesh& mesh, const Sample& all) {
 CheckReport check_file(const std::filesystem::path& path) {
     FileCells cells = read_vtu_cells(path);
     const std::size_t vertices = cells.position.size(), tets = cells.tets.size(), prisms = cells.prisms.size();
+    const std::string note = note_of(cells);
     Mesh mesh;
     try {
         mesh = make_frame(std::move(cells)).mesh;
@@ -212,10 +204,10 @@ CheckReport check_file(const std::filesystem::path& path) {
                 .text = fmt::format("{}: invalid\n{}\nvertices {:>10}\ntets     {:>10}\nprisms   {:>10}\n",
                                     path.string(), wrapped(error.what()), vertices, tets, prisms)};
     }
-    const std::string fault = first_fault(mesh);
+    const std::string fault = fault_of(mesh);
     const Samples samples = samples_of(mesh);
     std::string text = fmt::format("{}: {}\n", path.string(), fault.empty() ? "valid" : "invalid") +
-                       wrapped(fault) + counts(mesh) + volumes(samples) + layers(mesh) + jumps(mesh) +
+                       wrapped(fault) + note + counts(mesh) + volumes(samples) + layers(mesh) + jumps(mesh) +
                        table("aspect ratio R/r (3 is perfect)", samples, &Sample::aspect) +
                        table("dihedral angles [deg]", samples, &Sample::dihedral) + histograms(samples) +
                        worst_cell(mesh, samples.back().second);

@@ -3,6 +3,7 @@
 
 #include "app/body_sizes.h"
 #include "app/check.h"
+#include "app/check_files.h"
 #include "app/initial_mesh.h"
 #include "app/interrupt.h"
 #include "app/new_case.h"
@@ -18,6 +19,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 
 namespace kropla {
@@ -54,10 +58,31 @@ int write_initial_mesh(const MeshOptions& options) {
     return done;
 }
 
-int check_mesh(const std::filesystem::path& file) {
-    const CheckReport report = check_file(file);
-    fmt::print("{}", report.text);
-    return report.valid ? done : file_trouble;
+/// A full disk behind a redirected output shows when what was printed is handed over.
+void flush_output() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        throw FileError(fmt::format("the output cannot be written: {}", std::strerror(errno)));
+}
+
+/// All about one file; of several, a line each and a summary.
+int check_meshes(const std::vector<std::filesystem::path>& paths) {
+    const auto files = files_to_check(paths);
+    if (files == paths && files.size() == 1) {
+        const CheckReport report = check_file(files.front());
+        fmt::print("{}", report.text);
+        flush_output();
+        return report.valid ? done : file_trouble;
+    }
+    std::size_t valid = 0;
+    for (const auto& file : files) {
+        const CheckLine line = check_line(file);
+        if (line.valid) ++valid;
+        fmt::print("{}", line.text);
+        flush_output();
+    }
+    fmt::print("{} of {} files are valid\n", valid, files.size());
+    flush_output();
+    return valid == files.size() ? done : file_trouble;
 }
 
 int report_run(const std::filesystem::path& folder) {
@@ -78,6 +103,7 @@ struct Request {
     RunOptions run;
     MeshOptions mesh;
     std::filesystem::path file;  // or folder
+    std::vector<std::filesystem::path> files;  // or folders
     std::string name;
 };
 
@@ -106,9 +132,14 @@ void describe_others(CLI::App& app, Request& request) {
     mesh->add_option("-o,--output", request.mesh.out, "the VTU file to write")->required()->type_name("FILE");
     mesh->footer("Example: kropla mesh droplet.toml -o droplet.vtu");
 
-    CLI::App* check = app.add_subcommand("check", "Tells whether a mesh is valid, and how good it is");
-    check->add_option("FILE", request.file, "a VTU file, for example a frame of a run")->required();
-    check->footer("Example: kropla check droplet/frames/00010.vtu\nExit code: 0 valid, 5 not");
+    CLI::App* check = app.add_subcommand("check", "Tells whether meshes are valid, and how good they are");
+    check->add_option("FILE", request.files, "VTU files, a PVD file, or the folder of a run")->required();
+    check->footer(
+        "Of one VTU file all is told, of several a line each:\n"
+        "  kropla check droplet/frames/00010.vtu\n"
+        "  kropla check droplet\n"
+        "Cells of surfaces, lines and points are passed over.\n"
+        "Exit code: 0 all valid, 5 not, or not readable");
 
     CLI::App* report =
         app.add_subcommand("report", "Writes report.html, the run on one page, into its folder");
@@ -138,7 +169,7 @@ void describe(CLI::App& app, Request& request) {
 int dispatch(const CLI::App& app, const Request& request) {
     if (app.got_subcommand("run")) return run(request.run);
     if (app.got_subcommand("mesh")) return write_initial_mesh(request.mesh);
-    if (app.got_subcommand("check")) return check_mesh(request.file);
+    if (app.got_subcommand("check")) return check_meshes(request.files);
     if (app.got_subcommand("report")) return report_run(request.file);
     return start_case(request.name);
 }
@@ -164,6 +195,8 @@ int carry_out(const CLI::App& app, const Request& request) {
     } catch (const FloorError& error) {
         return complain(error.what(), floors_unreachable);
     } catch (const SolverError& error) {
+        return complain(error.what(), solver_failed);
+    } catch (const FieldError& error) {
         return complain(error.what(), solver_failed);
     } catch (const FileError& error) {
         return complain(error.what(), file_trouble);

@@ -1,26 +1,20 @@
-// Vertices on facets they do not belong to, by a sweep along x: vertices of the boundary sorted by x, each
-// facet asks those in its range.
+// Vertices on facets they do not belong to: each facet asks the vertices of the boundary that are near it.
 
 #include "app/hanging.h"
 
-#include "domain/shape.h"
+#include "mesh/box_tree.h"
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace kropla {
 namespace {
 
-template <class Vertices>
-Bounds bounds_of(const Mesh& mesh, const Vertices& vertices) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Bounds bounds = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-    for (const Vertex v : vertices)
-        for (int axis = 0; axis < 3; ++axis) {
-            bounds.min[axis] = std::min(bounds.min[axis], mesh.position[v][axis]);
-            bounds.max[axis] = std::max(bounds.max[axis], mesh.position[v][axis]);
-        }
-    return bounds;
+Extent extent_of(const Mesh& mesh, std::span<const Vertex> vertices) {
+    Extent extent;
+    for (const Vertex v : vertices) extent.take_in(mesh.position[v]);
+    return extent;
 }
 
 std::vector<Vertex> living_vertices(const Mesh& mesh) {
@@ -33,12 +27,12 @@ std::vector<Vertex> living_vertices(const Mesh& mesh) {
 /// The facets without a neighbour, except those in a face of the bounding box: beyond those is nothing to
 /// meet.
 std::vector<Facet> inner_boundary(const Mesh& mesh) {
-    const Bounds box = bounds_of(mesh, living_vertices(mesh));
+    const Extent box = extent_of(mesh, living_vertices(mesh));
     std::vector<Facet> facets;
     for (const Tet t : mesh.tets.indices())
         for (int corner = 0; corner < 4 && alive(mesh, t); ++corner) {
             if (mesh.neighbour[t][static_cast<std::size_t>(corner)].exists()) continue;
-            const Bounds own = bounds_of(mesh, facet_vertices(mesh, {t, corner}));
+            const Extent own = extent_of(mesh, facet_vertices(mesh, {t, corner}));
             bool in_face = false;
             for (int axis = 0; axis < 3; ++axis)
                 in_face = in_face || own.max[axis] == box.min[axis] || own.min[axis] == box.max[axis];
@@ -77,24 +71,31 @@ bool hangs_on(const Mesh& mesh, Vertex v, const std::array<Vertex, 3>& corners, 
 
 std::optional<HangingVertex> hanging_vertex(const Mesh& mesh) {
     const std::vector<Facet> facets = inner_boundary(mesh);
-    std::vector<Vertex> by_x;
+    std::vector<Vertex> vertices;
     for (const Facet facet : facets)
-        for (const Vertex v : facet_vertices(mesh, facet)) by_x.push_back(v);
-    const auto x_of = [&](Vertex v) { return mesh.position[v].x; };
-    std::ranges::sort(by_x,
-                      [&](Vertex a, Vertex b) { return std::pair(x_of(a), a) < std::pair(x_of(b), b); });
-    by_x.erase(std::ranges::unique(by_x).begin(), by_x.end());
+        for (const Vertex v : facet_vertices(mesh, facet)) vertices.push_back(v);
+    std::ranges::sort(vertices);
+    vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+    std::vector<Extent> points;
+    for (const Vertex v : vertices) points.push_back({mesh.position[v], mesh.position[v]});
+    const BoxTree tree(std::move(points));
 
     constexpr double tolerance = 1e-6;  // [-] of the facet's extent: above the rounding of single precision
+    std::optional<HangingVertex> found;
     for (const Facet facet : facets) {
         const auto corners = facet_vertices(mesh, facet);
-        const Bounds own = bounds_of(mesh, corners);
-        const double reach = tolerance * distance(own.min, own.max);
-        for (auto v = std::ranges::lower_bound(by_x, own.min.x - reach, {}, x_of);
-             v != by_x.end() && x_of(*v) <= own.max.x + reach; ++v)
-            if (hangs_on(mesh, *v, corners, reach)) return HangingVertex{*v, facet};
+        Extent near = extent_of(mesh, corners);
+        const double reach = tolerance * distance(near.min, near.max);
+        near.min -= {reach, reach, reach};
+        near.max += {reach, reach, reach};
+        tree.any(near, [&](std::size_t i) {
+            if (!hangs_on(mesh, vertices[i], corners, reach)) return false;
+            found = {vertices[i], facet};
+            return true;
+        });
+        if (found) break;
     }
-    return {};
+    return found;
 }
 
 }  // namespace kropla

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <optional>
 
 namespace kropla {
 namespace {
@@ -92,15 +93,19 @@ void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const C
     for (const SurfaceFlux& flux : heat.surfaces) report.heat_from_bodies.push_back(flux.total);
 }
 
-/// Stage 2.6.
-void accept(State& state, std::vector<NodalField> fields, const Case& it, StepReport& report) {
-    MovingMesh& moving = state.moving;
+/// Stage 2.6, up to what cannot be taken back.
+void remesh(MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, StepReport& report) {
     const Changes* remeshed = nullptr;
     {
         const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
-        remeshed = &moving.accept();
+        remeshed = &moving.remesh();
     }
-    carry_fields(fields, moving.before(), moving.reference(), *remeshed, it, report);
+    carry_fields(fields, moving.before(), moving.current(), *remeshed, it, report);
+}
+
+void accept(State& state, std::vector<NodalField> fields, StepReport& report) {
+    const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
+    state.moving.accept();
     state.fields = std::move(fields);
 }
 
@@ -123,14 +128,27 @@ void report_changes(const MovingMesh& moving, StepReport& report) {
     const StepStatistics& done = moving.statistics();
     report.changes = all_changes(done);
     const double tets = count_tets(mesh), vertices = count_vertices(mesh);
-    report.touched_fraction = done.cells_touched / tets;
+    report.touched_fraction = done.cells_touched / static_cast<double>(count_tets(moving.before()));
     report.kept_tets = 1 - count_new_cells(mesh, report.changes.cells) / tets;
     report.kept_vertices = 1 - report.changes.vertices_inserted / vertices;
 }
 
-}  // namespace
-
-namespace {
+/// The step as far as it can be taken back, fields and all. Returns why it is refused, if it is.
+std::optional<std::string> attempt(MovingMesh& moving, std::vector<NodalField>& fields, const Case& it,
+                                   const Ranks& ranks, double dt, StepReport& report) {
+    report.energy_by_transfer = report.transferred_fraction = 0;
+    report.transfer = {};
+    try {
+        prepare(moving, fields, moving.time() + dt, it, report);
+        heed(ranks.watch);
+        if (const auto refusal = moving.refusal()) return refusal->why;
+        simulate(moving, fields, it, ranks, dt, report);
+        remesh(moving, fields, it, report);
+    } catch (const TransferError& error) {
+        return error.what();
+    }
+    return std::nullopt;
+}
 
 StepReport try_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
     MovingMesh& moving = state.moving;
@@ -140,26 +158,21 @@ StepReport try_step(State& state, const Case& it, const Ranks& ranks, const Step
     StepReport report;
     for (report.attempts = 1;; ++report.attempts) {
         std::vector<NodalField> fields = state.fields;
-        report.energy_by_transfer = report.transferred_fraction = 0;
-        report.transfer = {};
-        prepare(moving, fields, start + dt, it, report);
-        heed(ranks.watch);
-        if (const auto refusal = moving.refusal()) {
+        if (const auto why = attempt(moving, fields, it, ranks, dt, report)) {
             moving.refuse();
-            report.refused = refusal->why;
+            report.refused = *why;
             if (report.attempts > 1) dt /= 2;
             if (dt >= options.least_dt) continue;
             throw FloorError(fmt::format("at t = {:.6g} s the mesh cannot go on, even by {:.2g} s: {}", start,
-                                         2 * dt, refusal->why));
+                                         2 * dt, *why));
         }
-        simulate(moving, fields, it, ranks, dt, report);
         if (to_roll_back) {
             moving.refuse();
             to_roll_back = false;
             --report.attempts;
             continue;
         }
-        accept(state, std::move(fields), it, report);
+        accept(state, std::move(fields), report);
         break;
     }
     report.time = moving.time();

@@ -16,6 +16,12 @@ struct FileError : std::runtime_error { using runtime_error::runtime_error; };
 /// The solver did not converge, or the library below it failed.
 struct SolverError : std::runtime_error { using runtime_error::runtime_error; };
 
+/// A field or weight to be carried is not finite. The message names vertex or cell, and value.
+struct FieldError : std::runtime_error { using runtime_error::runtime_error; };
+
+/// A field cannot be carried to another mesh with its integral. The message names region and place.
+struct TransferError : std::runtime_error { using runtime_error::runtime_error; };
+
 /// The mesh cannot keep its floors, whatever was tried. The message names the cell, the place and the time.
 struct FloorError : std::runtime_error { using runtime_error::runtime_error; };
 

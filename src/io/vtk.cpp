@@ -242,7 +242,12 @@ Array<Vertex, Vec3> read_positions(const std::filesystem::path& path, vtkUnstruc
 
 std::string cell_name(vtkIdType cell) { return "cell " + std::to_string(cell); }
 
-/// Throws unless the cells are tets and prisms and their lists of vertices are in the file.
+/// Of a surface, a line or a point, of straight or bent edges.
+bool has_no_volume(int type) {
+    return (type >= VTK_VERTEX && type <= VTK_QUAD) || (type >= VTK_QUADRATIC_EDGE && type <= VTK_QUADRATIC_QUAD);
+}
+
+/// Throws unless the cells that have volume are tets and prisms and their lists of vertices are in the file.
 void check_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
     const vtkIdType count = grid.GetNumberOfCells();
     if (count <= 0) fail(path, "has no cells");
@@ -252,6 +257,7 @@ void check_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
         fail(path, "is damaged: its lists of cells do not fit each other");
     for (vtkIdType cell = 0; cell < count; ++cell) {
         const int type = grid.GetCellType(cell);
+        if (has_no_volume(type)) continue;
         if (type != VTK_TETRA && type != VTK_WEDGE)
             fail(path, cell_name(cell) + " is a " + vtkCellTypes::GetClassNameFromTypeId(type) +
                            " (VTK cell type " + std::to_string(type) + "), not a linear tet or prism");
@@ -314,6 +320,8 @@ void read_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid, Fi
         if (grid.GetCellType(cell) == VTK_TETRA) {
             cells.tets.push_back(read_vertices<4>(path, grid, cell));
             cells.region.push_back(region);
+        } else if (has_no_volume(grid.GetCellType(cell))) {
+            ++cells.passed_over;
         } else {
             if (!layers) layers = read_numbers(path, grid, "layer");
             cells.prisms.push_back(read_prism(path, grid, cell, region, layers));

@@ -27,11 +27,12 @@ struct FileCells {
     Array<Tet, Region> region;               // 0 where the file has no cell array "region"
     std::vector<LoosePrism> prisms;          // vertices exist
     std::vector<NodalField> fields;          // point arrays of one component
+    std::size_t passed_over = 0;             // cells of surfaces, lines and points, as mesh generators add them
 };
 
 /// Throws FileError, in one line, if the file is missing, unreadable, not VTU, truncated or damaged, or has
-/// no tets, cells that are neither linear tets nor prisms, prisms without a cell array "layer", cells of vertices
-/// that do not exist, or coordinates that are not finite. Tets are numbered in the order of the file.
+/// no tets, cells of volume that are neither linear tets nor prisms, prisms without a cell array "layer", cells of vertices
+/// that do not exist, or coordinates that are not finite. Tets are numbered in the order of the file, by themselves.
 [[nodiscard]] FileCells read_vtu_cells(const std::filesystem::path& path);
 
 struct Frame {

@@ -4,6 +4,7 @@ list(APPEND KROPLA_MESH_FILES
     mesh/cavity.cpp
     mesh/prisms.cpp
     mesh/quality.cpp
+    mesh/crossing.cpp
     mesh/verify.cpp
     mesh/verify_layers.cpp
 )

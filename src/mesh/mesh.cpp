@@ -183,6 +183,18 @@ void copy_tet(Mesh& to, const Mesh& from, Tet t) {
     to.region[t] = from.region[t];
 }
 
+/// Layers are the same in all meshes of a run: this is a look, and no copy.
+void copy_layers(Mesh& to, const Mesh& from) {
+    if (to.layers == from.layers) return;
+    const auto copy_columns = [&](const std::vector<PrismLayer>& layers) {
+        for (const PrismLayer& layer : layers)
+            for (Vertex v : layer.columns) copy_vertex(to, from, v);
+    };
+    copy_columns(from.layers);
+    copy_columns(to.layers);
+    to.layers = from.layers;
+}
+
 }  // namespace
 
 void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::span<const Vertex> vertices) {
@@ -206,6 +218,7 @@ void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::sp
     }
     for (Vertex v : vertices)
         if (has_slot(from, v)) to.position[v] = from.position[v];
+    copy_layers(to, from);
     to.free_tets = from.free_tets;
     to.free_vertices = from.free_vertices;
 }

@@ -90,8 +90,9 @@ struct Compacted {
 /// The same with vertices and tets in the order given, which holds each that is alive once.
 [[nodiscard]] Compacted reorder(const Mesh& mesh, Array<Vertex, Vertex> vertices, Array<Tet, Tet> tets);
 
-/// Makes `to` equal to `from` where they may differ: in the slots of `tets` and in the places of `vertices`.
-/// Work is proportional to those, and to the free slots.
+/// Makes `to` equal to `from` where they may differ: in the slots of `tets`, in the places of `vertices`, and in the
+/// layers, whose vertices are to be named if they have moved, but not if the layers themselves are others.
+/// Work is proportional to those, to the free slots and to the layers' vertices.
 void copy_changed(Mesh& to, const Mesh& from, std::span<const Tet> tets, std::span<const Vertex> vertices);
 
 }  // namespace kropla

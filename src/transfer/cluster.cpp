@@ -7,16 +7,23 @@
 namespace kropla {
 namespace {
 
-/// The vertices of the facets across which the cluster's region goes on without it, each once.
-std::vector<Vertex> rim_vertices(const Mesh& after, const Clusters& clusters, std::size_t cluster) {
-    std::vector<Vertex> vertices;
+/// The facets across which the cluster's region goes on without it.
+std::vector<Facet> rim(const Mesh& after, const Clusters& clusters, std::size_t cluster) {
+    std::vector<Facet> facets;
     for (Tet t : clusters.cells(cluster))
         for (int corner = 0; corner < 4; ++corner) {
             const Tet n = after.neighbour[t][static_cast<std::size_t>(corner)];
             if (!n.exists() || after.region[n] != after.region[t]) continue;
-            if (clusters.cluster_of(n) == static_cast<std::int32_t>(cluster)) continue;
-            for (Vertex v : facet_vertices(after, {t, corner})) vertices.push_back(v);
+            if (clusters.cluster_of(n) != static_cast<std::int32_t>(cluster)) facets.push_back({t, corner});
         }
+    return facets;
+}
+
+/// Their vertices, each once.
+std::vector<Vertex> vertices_of(const Mesh& after, std::span<const Facet> facets) {
+    std::vector<Vertex> vertices;
+    for (const Facet facet : facets)
+        for (Vertex v : facet_vertices(after, facet)) vertices.push_back(v);
     std::ranges::sort(vertices);
     const auto repeated = std::ranges::unique(vertices);
     vertices.erase(repeated.begin(), repeated.end());
@@ -90,7 +97,8 @@ bool Clusters::grow(const Mesh& after, std::size_t cluster) {
     const std::size_t size = cells_[cluster].size();
     std::vector<Tet> tets;
     std::vector<Vertex> shared;
-    for (Vertex v : rim_vertices(after, *this, cluster)) {
+    const std::vector<Facet> facets = rim(after, *this, cluster);
+    for (Vertex v : vertices_of(after, facets)) {
         if (after.layer_at[v].exists()) continue;
         ball(after, v, tets);
         const Region region = after.region[tets.front()];
@@ -105,7 +113,10 @@ bool Clusters::grow(const Mesh& after, std::size_t cluster) {
         ball(after, v, tets);
         for (Tet t : tets) claim(t, now(cluster));
     }
-    return cells_[now(cluster)].size() > size;
+    if (cells_[now(cluster)].size() > size) return true;
+    for (const auto [t, corner] : facets)
+        claim(after.neighbour[t][static_cast<std::size_t>(corner)], now(cluster));
+    return !facets.empty();
 }
 
 bool Clusters::is_alone(std::span<const Tet> ball, std::size_t cluster) const {

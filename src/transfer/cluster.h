@@ -35,8 +35,9 @@ public:
     [[nodiscard]] bool has_free_vertex(const Mesh& after, std::size_t cluster);
 
     /// Takes in the balls of the vertices at its rim that no interface or layer holds: of those that no other
-    /// cluster shares; if there are none, of all. Returns whether that added any cell. It may be another
-    /// cluster's from then on: see `now`.
+    /// cluster shares; if there are none, of all; and if there are none of these either, as in a gap of one
+    /// cell between two interfaces, the cells beyond its rim. Returns whether that added any cell: if not, it
+    /// fills its region. It may be another cluster's from then on: see `now`.
     bool grow(const Mesh& after, std::size_t cluster);
 
 private:

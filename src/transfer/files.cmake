@@ -7,6 +7,7 @@ list(APPEND KROPLA_MESH_FILES
     transfer/mass.cpp
     transfer/limit.cpp
     transfer/plan.cpp
+    transfer/kept.cpp
     transfer/project.cpp
     transfer/project_cells.cpp
 )

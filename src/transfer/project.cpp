@@ -7,6 +7,7 @@
 // Changed: it is local to what changed; values at the rim stay, and the integral is kept by a multiplier
 // instead. Values are taken relative to one of the block's own, so that a constant field stays to the bit.
 
+#include "transfer/kept.h"
 #include "transfer/limit.h"
 #include "transfer/transfer.h"
 
@@ -167,7 +168,7 @@ void bring_into_bounds(const MassBlock& block, const BlockSystem& system, double
 BlockSolution solve_block(const TransferPlan& plan, const MassBlock& block, const OldField& old,
                           bool limited) {
     BlockSolution solution;
-    if (block.free.empty()) return solution;
+    if (block.free.empty() || block.gone.empty()) return solution;
     solution.origin = old[block.gone.front().vertices[0]];
     const BlockSystem system = block_system(plan, block, old, solution.origin);
     solution.value.assign(block.free.size(), 0);
@@ -193,13 +194,16 @@ public:
           grown_(plan.blocks.size()) {}
 
     TransferReport run() {
+        check_data();
         tbb::parallel_for(std::size_t{0}, solutions_.size(), [&](std::size_t c) {
             solutions_[c] = solve_block(plan_, plan_.blocks[c], old_, options_.limit);
         });
         if (std::ranges::any_of(solutions_, [](const BlockSolution& s) { return !s.bounded; })) grow();
-        for (std::size_t c = 0; c < solutions_.size(); ++c) add_old(c);
+        RegionSums sums(plan_);
+        for (std::size_t c = 0; c < solutions_.size(); ++c) add(c, sums);
+        sums.check();
+        sums.report(report_, options_.weight);
         write();
-        for (std::size_t c = 0; c < solutions_.size(); ++c) add_new(c);
         return report_;
     }
 
@@ -227,33 +231,36 @@ private:
     }
     [[nodiscard]] bool gone(std::size_t c) const { return !gone_.empty() && gone_[c]; }
 
-    [[nodiscard]] double weight(Region region) const {
-        return options_.weight.empty() ? 1 : options_.weight[at(region.value)];
+    void check_data() const {
+        check_weights(*plan_.after, plan_.changed, options_.weight);
+        const auto check = [&](Vertex v) { check_value(values_[v], "vertex", v.value); };
+        for (const MassBlock& block : plan_.blocks)
+            for (const OldMass& cell : block.gone) std::ranges::for_each(cell.vertices, check);
+        for (const GivenVertex& vertex : plan_.given) std::ranges::for_each(vertex.from, check);
     }
 
-    void add_old(std::size_t c) {
-        if (gone(c) || block(c).cells.empty()) return;
-        const double w = weight(plan_.after->region[block(c).cells.front().tet]);
-        for (const OldMass& cell : block(c).gone) {
+    void add(std::size_t c, RegionSums& sums) {
+        const MassBlock& of = block(c);
+        if (gone(c) || of.cells.empty()) return;
+        const BlockSolution& s = solutions_[c];
+        const Region region = plan_.after->region[of.cells.front().tet];
+        for (const OldMass& cell : of.gone) {
             double sum = 0, size = 0;
             for (Vertex v : cell.vertices) {
                 sum += values_[v];
                 size += std::abs(values_[v]);
             }
-            report_.before += w * cell.volume / 4 * sum;
-            report_.size += std::abs(w) * cell.volume / 4 * size;
+            sums.add_old(region, cell.volume / 4 * sum, cell.volume / 4 * size);
         }
-        report_.limited = std::max(report_.limited, solutions_[c].limited);
-        report_.beyond = std::max(report_.beyond, solutions_[c].beyond);
-    }
-    void add_new(std::size_t c) {
-        if (gone(c) || block(c).cells.empty()) return;
-        const double w = weight(plan_.after->region[block(c).cells.front().tet]);
-        for (const MassCell& cell : block(c).cells) {
+        for (const MassCell& cell : of.cells) {
             double sum = 0;
-            for (Vertex v : plan_.after->tets[cell.tet]) sum += values_[v];
-            report_.after += w * cell.volume / 4 * sum;
+            for (std::size_t k = 0; k < 4; ++k)
+                sum += cell.unknown[k] >= 0 && !s.value.empty() ? s.origin + s.value[at(cell.unknown[k])]
+                                                                : old_.held(plan_.after->tets[cell.tet][k]);
+            sums.add_new(cell.tet, cell.volume / 4 * sum);
         }
+        report_.limited = std::max(report_.limited, s.limited);
+        report_.beyond = std::max(report_.beyond, s.beyond);
     }
     void write() {
         std::vector<double> given;

@@ -1,41 +1,32 @@
 // Projection of cell fields: a new cell gets the mean of the old ones by their shares of it.
 
-#include "base/tetrahedron.h"
+#include "mesh/quality.h"
+#include "transfer/kept.h"
 #include "transfer/transfer.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace kropla {
-namespace {
-
-double volume_of(const Mesh& mesh, Tet t) {
-    const auto& v = mesh.tets[t];
-    return tet_volume(mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]], mesh.position[v[3]]);
-}
-
-}  // namespace
-
 TransferReport project(const TransferPlan& plan, CellData values, const ProjectOptions& options) {
-    const auto weighted_volume = [&](const Mesh& mesh, Tet t) {
-        const auto region = static_cast<std::size_t>(mesh.region[t].value);
-        return volume_of(mesh, t) * (options.weight.empty() ? 1 : options.weight[region]);
-    };
-    TransferReport report;
-    for (Tet t : plan.changed.gone) {
-        const double part = weighted_volume(*plan.before, t) * values[t];
-        report.before += part;
-        report.size += std::abs(part);
-    }
+    check_weights(*plan.after, plan.changed, options.weight);
+    for (Tet t : plan.changed.gone) check_value(values[t], "cell", t.value);
+    RegionSums sums(plan);
     std::vector<double> fresh(plan.changed.come.size());
-    for (std::size_t i = 0; i < fresh.size(); ++i)
-        for (const CellShare& share : plan.overlaps.cell(i))
-            fresh[i] += share.share * values[plan.changed.gone[static_cast<std::size_t>(share.gone)]];
     for (std::size_t i = 0; i < fresh.size(); ++i) {
         const Tet t = plan.changed.come[i];
-        values[t] = fresh[i];
-        report.after += weighted_volume(*plan.after, t) * fresh[i];
+        for (const CellShare& share : plan.overlaps.cell(i))
+            fresh[i] += share.share * values[plan.changed.gone[static_cast<std::size_t>(share.gone)]];
+        sums.add_new(t, volume(*plan.after, t) * fresh[i]);
     }
+    for (Tet t : plan.changed.gone) {
+        const double part = volume(*plan.before, t) * values[t];
+        sums.add_old(plan.before->region[t], part, std::abs(part));
+    }
+    sums.check();
+    for (std::size_t i = 0; i < fresh.size(); ++i) values[plan.changed.come[i]] = fresh[i];
+    TransferReport report;
+    sums.report(report, options.weight);
     return report;
 }
 

@@ -98,6 +98,9 @@ struct TransferReport {
 /// ring of cells if it has no free vertex, or if no values within the bounds have the integral. Vertices of
 /// interfaces and layers keep their values, so that each region's integral is its own. Linear fields are kept
 /// exactly.
+/// Throws, nothing written: FieldError if a value that takes part or a weight is not finite, or a region has no
+/// weight; TransferError if the integral of a region would differ by more than 1e-12 of that of the absolute
+/// value, as where cells change in a region of which no vertex is free.
 TransferReport project(const TransferPlan& plan, NodalData values, const ProjectOptions& options = {});
 TransferReport project(const TransferPlan& plan, Array<Vertex, double>& values,
                        const ProjectOptions& options = {});
@@ -106,7 +109,7 @@ TransferReport project(const TransferPlan& plan, Array<Vertex, Vec3>& values,
                        const ProjectOptions& options = {});
 
 /// Carries a field that is constant in every tet: means over the old cells that overlap, which keep the
-/// integral and the bounds by themselves.
+/// integral and the bounds by themselves. Throws as for vertices.
 TransferReport project(const TransferPlan& plan, CellData values, const ProjectOptions& options = {});
 TransferReport project(const TransferPlan& plan, Array<Tet, double>& values,
                        const ProjectOptions& options = {});

@@ -159,9 +159,26 @@ TEST(Vtu, ReadsWhatOthersWrite) {
     EXPECT_EQ(frame.mesh.region[Tet(0)], surroundings);
 }
 
+TEST(Vtu, PassesOverCellsWithoutVolume) {
+    const Folder folder;
+    put(folder / "a.vtu", text_of({.connectivity = "0  0 1  0 2 1  0 1 2 3  0 1 3",
+                                   .offsets = "1 3 6 10 13",
+                                   .types = "1 3 5 10 5",
+                                   .cell_count = 5,
+                                   .cell_arrays = "<DataArray type=\"Int32\" Name=\"region\" format=\"ascii\">"
+                                                  "7 7 7 3 7</DataArray>"}));
+    const FileCells cells = read_vtu_cells(folder / "a.vtu");
+    EXPECT_EQ(cells.tets.size(), 1u);
+    EXPECT_EQ(cells.region[Tet(0)], Region(3));
+    EXPECT_EQ(cells.passed_over, 4u);
+}
+
 TEST(Vtu, RefusesInOneLine) {
     EXPECT_EQ(refusal({.connectivity = "", .offsets = "", .types = "", .cell_count = 0}), "has no cells");
-    EXPECT_EQ(refusal({.types = "9"}), "cell 0 is a vtkQuad (VTK cell type 9), not a linear tet or prism");
+    EXPECT_EQ(refusal({.types = "12"}), "cell 0 is a vtkHexahedron (VTK cell type 12), not a linear tet or prism");
+    EXPECT_EQ(refusal({.types = "24"}),
+              "cell 0 is a vtkQuadraticTetra (VTK cell type 24), not a linear tet or prism");
+    EXPECT_EQ(refusal({.types = "9"}), "has no tets");
     EXPECT_EQ(refusal({.connectivity = "0 1 2 4"}), "cell 0 has vertex 4, which is not among the 4");
     EXPECT_EQ(refusal({.connectivity = "0 1 2", .offsets = "3"}), "cell 0 is a tet of 3 vertices");
     const std::string region = "<DataArray type=\"Float64\" Name=\"region\" format=\"ascii\">-1</DataArray>";

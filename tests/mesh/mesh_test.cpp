@@ -182,6 +182,22 @@ TEST(CopyChanged, CopiesWhatIsNamedAndNothingElse) {
     EXPECT_EQ(to, from);
 }
 
+TEST(CopyChanged, TakesLayersAlong) {
+    const Mesh thin = layered_cube(2), thick = layered_cube(5), bare = cube_in_cube(3);
+    for (const auto& [from, to] : {std::pair(&thin, &thick), {&thick, &thin}, {&thick, &bare}, {&bare, &thick}}) {
+        std::vector<Tet> tets;
+        for (std::size_t i = 0; i < std::max(from->tets.size(), to->tets.size()); ++i) tets.push_back(Tet(i));
+        Mesh follower = *to;
+        ASSERT_NE(follower.layers, from->layers);
+        copy_changed(follower, *from, tets, {});
+        EXPECT_EQ(follower, *from);
+    }
+    Mesh moved = thick, follower = thick;  // the same layer, elsewhere
+    for (Vertex v : moved.layers.front().columns) moved.position[v] *= 1.01;
+    copy_changed(follower, moved, {}, moved.layers.front().columns);
+    EXPECT_EQ(follower, moved);
+}
+
 TEST(CopyChanged, MakesTheMeshSmallerAgain) {
     const Mesh before = cube_of_tets(1);
     Mesh mesh = before;

@@ -1,0 +1,209 @@
+// Do surfaces cross? Two triangles that are not in one plane meet, if they do, in a segment that ends at an edge of
+// one of them; so it is enough to ask whether an edge of one meets the other, as in [Guigue, Devillers 2003] "Fast
+// and robust triangle-triangle overlap test using orientation predicates", J. Graphics Tools 8. Within a plane the
+// orientation is asked with the facet's fourth vertex, which is off the plane, so that one predicate does for all.
+// Changed: triangles may share vertices, where they are to have nothing else in common.
+
+#include "mesh/crossing.h"
+
+#include "base/predicates.h"
+#include "mesh/box_tree.h"
+#include "mesh/quality.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace kropla {
+namespace {
+
+/// A facet by its corners' places, and that of its cell's vertex opposite.
+struct Triangle {
+    std::array<Vertex, 3> vertices;
+    std::array<Vec3, 3> place;
+    Vec3 apex;
+};
+
+Triangle triangle_of(const Mesh& mesh, Facet f) {
+    Triangle t{facet_vertices(mesh, f), {}, mesh.position[mesh.tets[f.tet][static_cast<std::size_t>(f.corner)]]};
+    for (std::size_t i = 0; i < 3; ++i) t.place[i] = mesh.position[t.vertices[i]];
+    return t;
+}
+
+/// As orient3d, at once where the points lie in a plane across an axis.
+int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == x[axis]) return 0;
+    return orient3d(a, b, c, x);
+}
+
+/// Of points in the plane of a triangle; `apex` is off it.
+bool is_inside(const Vec3& x, const Triangle& t) {
+    bool left = false, right = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const int s = side(t.place[i], t.place[(i + 1) % 3], x, t.apex);
+        left = left || s > 0;
+        right = right || s < 0;
+    }
+    return !(left && right);
+}
+
+bool ranges_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+    Extent one, other;
+    one.take_in(p);
+    one.take_in(q);
+    other.take_in(a);
+    other.take_in(b);
+    return one.meets(other);
+}
+
+bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& apex) {
+    const int pa = side(p, q, a, apex), pb = side(p, q, b, apex);
+    if (pa * pb > 0) return false;
+    if (pa == 0 && pb == 0) return ranges_meet(p, q, a, b);  // all on one line
+    return side(a, b, p, apex) * side(a, b, q, apex) <= 0;
+}
+
+bool meets_in_plane(const Vec3& p, const Vec3& q, const Triangle& t) {
+    if (is_inside(p, t) || is_inside(q, t)) return true;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (segments_meet(p, q, t.place[i], t.place[(i + 1) % 3], t.apex)) return true;
+    return false;
+}
+
+/// The segment and the triangle, ends and edges included.
+bool meets(const Vec3& p, const Vec3& q, const Triangle& t) {
+    const auto& [a, b, c] = t.place;
+    const int sp = side(a, b, c, p), sq = side(a, b, c, q);
+    if (sp * sq > 0) return false;
+    if (sp == 0 && sq == 0) return meets_in_plane(p, q, t);
+    if (sp == 0 || sq == 0) return is_inside(sp == 0 ? p : q, t);
+    const int ab = side(p, q, a, b), bc = side(p, q, b, c), ca = side(p, q, c, a);
+    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+}
+
+bool has(const Triangle& t, Vertex v) { return std::ranges::find(t.vertices, v) != t.vertices.end(); }
+
+bool in_one_plane(const Triangle& s, const Triangle& t) {
+    return std::ranges::all_of(
+        t.place, [&](const Vec3& x) { return side(s.place[0], s.place[1], s.place[2], x) == 0; });
+}
+
+/// Whether an edge of `s` meets `t`; of its edges at a vertex that both have, only the one opposite is asked.
+bool edge_meets(const Triangle& s, const Triangle& t, bool share_one) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t a = (i + 1) % 3, b = (i + 2) % 3;
+        if (share_one && !has(t, s.vertices[i])) continue;
+        if (meets(s.place[a], s.place[b], t)) return true;
+    }
+    return false;
+}
+
+/// Of two that share an edge: whether they are folded onto each other.
+bool is_folded(const Triangle& s, const Triangle& t) {
+    const auto not_in = [](const Triangle& one, const Triangle& other) {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (!has(other, one.vertices[i])) return i;
+        return std::size_t{0};
+    };
+    const std::size_t i = not_in(s, t), j = not_in(t, s);
+    const Vec3 &u = s.place[(i + 1) % 3], &v = s.place[(i + 2) % 3];
+    return side(u, v, s.place[i], t.place[j]) == 0 &&
+           side(u, v, s.place[i], s.apex) == side(u, v, t.place[j], s.apex);
+}
+
+bool cross(const Triangle& s, const Triangle& t) {
+    const auto shared = std::ranges::count_if(s.vertices, [&](Vertex v) { return has(t, v); });
+    if (shared == 3) return true;
+    if (shared == 2) return is_folded(s, t);
+    return edge_meets(s, t, shared == 1) || edge_meets(t, s, shared == 1);
+}
+
+std::vector<Facet> boundary_facets(const Mesh& mesh) {
+    std::vector<Facet> facets;
+    for (const Tet t : mesh.tets.indices())
+        for (int corner = 0; corner < 4 && alive(mesh, t); ++corner)
+            if (!mesh.neighbour[t][static_cast<std::size_t>(corner)].exists()) facets.push_back({t, corner});
+    return facets;
+}
+
+Extent extent_of(const Mesh& mesh, std::span<const Vertex> vertices) {
+    Extent extent;
+    for (const Vertex v : vertices) extent.take_in(mesh.position[v]);
+    return extent;
+}
+
+/// One facet of each connected part of the boundary.
+std::vector<Facet> one_of_each_surface(const Mesh& mesh, std::span<const Facet> facets) {
+    Array<Vertex, Vertex> of(mesh.position.size());  // the way to the vertex that stands for its surface
+    for (const Vertex v : of.indices()) of[v] = v;
+    const auto root = [&](Vertex v) {
+        while (of[v] != v) v = of[v] = of[of[v]];
+        return v;
+    };
+    for (const Facet f : facets) {
+        const auto v = facet_vertices(mesh, f);
+        for (std::size_t i = 1; i < 3; ++i) of[root(v[i])] = root(v[0]);
+    }
+    std::vector<Facet> firsts;
+    Array<Vertex, char> seen(mesh.position.size(), 0);
+    for (const Facet f : facets) {
+        const Vertex v = root(facet_vertices(mesh, f)[0]);
+        if (!seen[v]) firsts.push_back(f);
+        seen[v] = 1;
+    }
+    return firsts;
+}
+
+bool is_within(const Mesh& mesh, const Vec3& x, Tet t) {
+    for (int corner = 0; corner < 4; ++corner) {
+        const auto [a, b, c] = facet_vertices(mesh, {t, corner});
+        if (orient3d(mesh.position[a], mesh.position[b], mesh.position[c], x) >= 0) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::optional<Crossing> find_crossing(const Mesh& mesh) {
+    const std::vector<Facet> facets = boundary_facets(mesh);
+    std::vector<Extent> extents;
+    for (const Facet f : facets) extents.push_back(extent_of(mesh, facet_vertices(mesh, f)));
+    const BoxTree tree(extents);
+    std::optional<Crossing> found;
+    for (std::size_t i = 0; i < facets.size() && !found; ++i) {
+        const Triangle s = triangle_of(mesh, facets[i]);
+        tree.any(extents[i], [&](std::size_t j) {
+            if (j <= i) return false;
+            const Triangle t = triangle_of(mesh, facets[j]);
+            if (!cross(s, t)) return false;
+            found = {facets[i], facets[j], in_one_plane(s, t)};
+            return true;
+        });
+    }
+    return found;
+}
+
+std::optional<Buried> find_buried(const Mesh& mesh) {
+    std::vector<Tet> cells;
+    std::vector<Vec3> middles;
+    std::vector<Extent> points;
+    for (const Facet f : one_of_each_surface(mesh, boundary_facets(mesh))) {
+        cells.push_back(f.tet);
+        middles.push_back(centroid(mesh, f.tet));
+        points.push_back({middles.back(), middles.back()});
+    }
+    const BoxTree tree(points);
+    std::optional<Buried> found;
+    for (const Tet t : mesh.tets.indices()) {
+        if (!alive(mesh, t)) continue;
+        const bool any = tree.any(extent_of(mesh, mesh.tets[t]), [&](std::size_t i) {
+            if (cells[i] == t || !is_within(mesh, middles[i], t)) return false;
+            found = {cells[i], t};
+            return true;
+        });
+        if (any) break;
+    }
+    return found;
+}
+
+}  // namespace kropla
