@@ -41,8 +41,14 @@ double surface_size(const Snapshot& at, std::size_t body) {
     return std::min(at.size.surface, most_per_height * top);
 }
 
+double largest_size(const Box& box, const SizeField& size) {
+    constexpr double most_in_widths = 1.0;
+    const Vec3 width = box.max - box.min;
+    return std::min(size.far, most_in_widths * std::min({width.x, width.y, width.z}));
+}
+
 double target_size(const Snapshot& at, const Vec3& x) {
-    double least = at.size.far;
+    double least = largest_size(at.box, at.size);
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
         const double rise = at.size.growth * std::abs(signed_distance(at.shapes[body], x));
         least = std::min(least, surface_size(at, body) + rise);
