@@ -27,6 +27,9 @@ struct Changes {
     int smoothing_sweeps = 0, moved = 0, swaps = 0, splits = 0, collapses = 0;
     int local_remeshes = 0, largest_ring = 0, global_remeshes = 0;
     int cells_replaced = 0, vertices_inserted = 0;
+    int treated = 0;  // bad cells for which a remedy was sought
+    int cut_out = 0;  // cells of the clusters that were cut out, whether or not it helped
+    int given_up = 0; // bad cells that were left as they are since a budget was spent
 
     Changes& operator+=(const Changes& other);
 };
@@ -100,6 +103,8 @@ struct AdaptOptions {
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
     double split_above = 1.59;        // [target sizes] longer edges are split
     double collapse_below = 0.625;    // [target sizes] shorter edges are collapsed
+    double treatments = 30;           // of bad cells that `improve` may seek a remedy for, per bad cell it begins with
+    double cut_out = 5;               // cells that may be cut out in clusters, per cell looked at
     bool clusters = true;             // what nothing else helps is re-triangulated with the ring around it
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung
@@ -114,7 +119,8 @@ Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 /// Works on the cells of `cells` (and those that replace them): above `good_enough` worst first, swap, else
 /// move a vertex, else collapse, else insert, never making the worst cell of a cavity worse; before and after
 /// that by swaps for the energy. Of several vertices the one is moved that has most of its
-/// cells among those that are new, or in `changed`: the solution is to be carried there anyway.
+/// cells among those that are new, or in `changed`: the solution is to be carried there anyway. Ends for every mesh,
+/// also one with cells turned over or flat, or with places that are not finite: these are mended or left.
 Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {},
                 std::span<const Tet> changed = {});
 
@@ -137,7 +143,8 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 [[nodiscard]] std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells);
 
 /// The repair ladder (paper 1.2-1.3): what `improve` leaves above the floor is cut out and re-triangulated,
-/// with one more ring of cells each time, at last with the whole region.
+/// with one more ring of cells each time, at last, once, with the whole region. `given_up` tells how many cells it left
+/// above the floor because its budget (`cut_out`) was spent.
 Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
 // --- Motion ------------------------------------------------------------------------------------------------------

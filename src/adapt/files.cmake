@@ -8,6 +8,7 @@ list(APPEND KROPLA_MESH_FILES
     adapt/refine.cpp
     adapt/improve.cpp
     adapt/remesh.cpp
+    adapt/way.cpp
     adapt/move.cpp
     adapt/moving_mesh.cpp
 )

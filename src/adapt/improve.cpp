@@ -2,9 +2,10 @@
 // (a swap keeps all vertices, smoothing moves one, a collapse loses one, a split adds one), after the
 // schedule of [Klingner, Shewchuk 2007], "Aggressive tetrahedral mesh improvement", here cell by cell, so that
 // work is proportional to the bad cells. What helps is asked, by several threads, for those at once that share no
-// vertex with a worse one, and carried out the worst first; what has been overtaken by others is asked anew. It
-// ends, as each step lowers the worst aspect ratio of what it replaces.
+// vertex with a worse one, and carried out the worst first; what has been overtaken by others is asked anew. Each
+// step lowers the worst aspect ratio of what it replaces; that it ends soon, in any mesh, is due to a budget.
 
+#include "adapt/budget.h"
 #include "adapt/propose.h"
 #include "adapt/star.h"
 #include "mesh/quality.h"
@@ -22,6 +23,9 @@ constexpr double slightly_longer = 1.05;        // an edge may be than another t
 constexpr int most_swap_rounds = 6;             // of those that others have overtaken
 constexpr double far_from_good = 1.03;          // [good_enough]
 constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
+constexpr double treatments_of_one = 100;       // that a single bad cell may ask for
+constexpr double splits_of_one = 50;            // and
+constexpr double splits_per_bad_cell = 1;       // more vertices only make more bad cells
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -132,6 +136,7 @@ struct Doctor {
     const Snapshot& at_time;
     const AdaptOptions& options;
     const IndexSet<Tet>& changed;
+    bool may_split;
 
     [[nodiscard]] std::optional<Remedy> remedy(const BadCell& bad) const;
     [[nodiscard]] std::optional<Cavity> swap_long_edge(const BadCell& bad) const;
@@ -147,6 +152,7 @@ std::optional<Remedy> Doctor::remedy(const BadCell& bad) const {
     if (auto other_place = move(bad.cell)) return other_place;
     if (auto cavity = swap_any(bad)) return Remedy{Kind::swap, std::move(*cavity)};
     if (auto cavity = collapse(bad)) return Remedy{Kind::collapse, std::move(*cavity)};
+    if (!may_split) return std::nullopt;
     if (auto cavity = split(bad)) return Remedy{Kind::split, std::move(*cavity)};
     return std::nullopt;
 }
@@ -275,15 +281,31 @@ std::vector<BadCell> take_apart(const Mesh& mesh, std::vector<BadCell>& bad) {
     return apart;
 }
 
-/// Treats the bad cells until none is left that anything helps. Returns those that are left; `changed` and
-/// `changes` grow.
+/// What improvement may do.
+struct Allowed {
+    Budget treatments{treatments_of_one}, splits{splits_of_one};
+
+    void add_for(std::size_t bad, const AdaptOptions& options) {
+        treatments.add(options.treatments * static_cast<double>(bad));
+        splits.add(splits_per_bad_cell * static_cast<double>(bad));
+    }
+};
+
+/// Treats the bad cells until none is left that anything helps, or what is allowed has been done. Returns those that are
+/// left; `changed` and `changes` grow.
 std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_time, const AdaptOptions& options,
-                       IndexSet<Tet>& changed, Changes& changes) {
+                       Allowed& allowed, IndexSet<Tet>& changed, Changes& changes) {
     std::vector<Tet> stuck;
     while (!bad.empty()) {
         heed(options.watch);
+        if (allowed.treatments.spent()) {
+            for (const BadCell& b : bad) stuck.push_back(b.cell);
+            break;
+        }
         const auto asked = take_apart(mesh, bad);
-        const Doctor doctor{mesh, at_time, options, changed};
+        allowed.treatments.take(static_cast<double>(asked.size()));
+        changes.treated += static_cast<int>(asked.size());
+        const Doctor doctor{mesh, at_time, options, changed, !allowed.splits.spent()};
         const Vertex next = next_vertex(mesh);
         auto remedies = propose_all(asked.size(), [&](std::size_t i) { return doctor.remedy(asked[i]); }, options.watch);
         std::vector<Tet> again;
@@ -297,6 +319,7 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
                 continue;
             }
             replaced.add(remedy.cavity);
+            if (remedy.kind == Kind::split) allowed.splits.take(1);
             rename_inserted(remedy.cavity, next, mesh);
             for (Tet t : apply(mesh, remedy, changes)) {
                 changed.insert(t);
@@ -312,12 +335,12 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
 
 /// Re-triangulates the cell with the ring around it; with two, which costs far more, if it is far from good.
 void retriangulate(Mesh& mesh, const BadCell& bad, const Snapshot& at_time, const AdaptOptions& options,
-                   Changes& changes) {
+                   Budget& budget, Changes& changes) {
     std::vector<Tet> cluster = {bad.cell};
     const int rings = bad.ratio > far_from_good * options.good_enough ? 2 : 1;
     for (int ring = 1; ring <= rings; ++ring) {
         cluster = with_ring(mesh, cluster);
-        const auto cavity = cluster_remesh(mesh, cluster, at_time, options);
+        const auto cavity = cluster_remesh(mesh, cluster, at_time, options, budget);
         if (!cavity || cavity->worst_after > bound(bad)) continue;
         carry_out(mesh, *cavity, changes);
         ++changes.local_remeshes;
@@ -328,11 +351,18 @@ void retriangulate(Mesh& mesh, const BadCell& bad, const Snapshot& at_time, cons
 
 /// The same for all cells that nothing else has helped.
 void retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at_time, const AdaptOptions& options,
-                   Changes& changes) {
-    for (Tet t : stuck)
-        if (alive(mesh, t))
-            if (const double ratio = aspect_ratio(mesh, t); ratio > options.good_enough)
-                retriangulate(mesh, BadCell{ratio, t}, at_time, options, changes);
+                   std::size_t cells, Changes& changes) {
+    const double allowed = cells_to_cut_out(cells, options);
+    Budget budget(allowed);
+    for (Tet t : stuck) {
+        heed(options.watch);
+        if (!alive(mesh, t)) continue;
+        const double ratio = aspect_ratio(mesh, t);
+        if (!(ratio > options.good_enough)) continue;
+        if (budget.spent()) ++changes.given_up;
+        else retriangulate(mesh, BadCell{ratio, t}, at_time, options, budget, changes);
+    }
+    changes.cut_out += static_cast<int>(allowed - budget.left());
 }
 
 }  // namespace
@@ -351,6 +381,9 @@ Changes& Changes::operator+=(const Changes& other) {
     global_remeshes += other.global_remeshes;
     cells_replaced += other.cells_replaced;
     vertices_inserted += other.vertices_inserted;
+    treated += other.treated;
+    cut_out += other.cut_out;
+    given_up += other.given_up;
     return *this;
 }
 
@@ -400,14 +433,17 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time,
     std::vector<Tet> left(cells.begin(), cells.end());
     left.insert(left.end(), changes.cells.begin(), changes.cells.end());
     const auto swapped = static_cast<std::ptrdiff_t>(changes.cells.size());
+    Allowed allowed;
     for (int round = 0; round < most_rounds && !left.empty(); ++round) {
         const std::size_t before = changes.cells.size() + changes.vertices.size();
         std::vector<BadCell> bad;
         add_bad(mesh, std::move(left), options.good_enough, bad);
-        left = treat(mesh, std::move(bad), at_time, options, changed, changes);
+        if (round == 0) allowed.add_for(bad.size(), options);
+        left = treat(mesh, std::move(bad), at_time, options, allowed, changed, changes);
         if (changes.cells.size() + changes.vertices.size() == before) break;
     }
-    if (options.clusters) retriangulate(mesh, left, at_time, options, changes);
+    if (options.clusters) retriangulate(mesh, left, at_time, options, cells.size(), changes);
+    else if (allowed.treatments.spent()) changes.given_up += static_cast<int>(left.size());
     const std::vector<Tet> added(changes.cells.begin() + swapped, changes.cells.end());
     changes += swap_for_energy(mesh, added, options);
     return changes;

@@ -32,6 +32,7 @@ struct Travel {
     double reach;     // [m]
     double far_away;  // from the centre, nothing beyond is in reach [m]
     double grain;     // of places in the body [m]: a power of two
+    double sized = 0; // from the centre at either end, no target size changes beyond [m]; 0: where none does beyond reach
 
     /// Where a point fixed to the body would go from `x`.
     [[nodiscard]] Vec3 displacement(const Vec3& x) const {
@@ -82,13 +83,27 @@ double reach_of(const Shape& shape, const Domain& domain) {
     return std::max(sizes * size, least_reach_in_sizes * domain.size.surface);
 }
 
+/// How far from a body within the box the target size rises [m].
+double graded_distance(const Snapshot& at, std::size_t body) {
+    const double rise = largest_size(at.box, at.size) - surface_size(at, body);
+    const double across = norm(at.box.max - at.box.min);
+    return at.size.growth * across > rise ? std::max(0.0, rise / at.size.growth) : across;
+}
+
+bool moves(const Travel& travel) {
+    return travel.from.centre != travel.to.centre || travel.from.orientation.axes != travel.to.orientation.axes;
+}
+
 std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
     std::vector<Travel> result;
-    for (const Body& body : domain.bodies) {
-        const Shape from = shape_at(body, t0);
+    const Snapshot start = snapshot(domain, t0);
+    for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
+        const Shape& from = start.shapes[body];
         const double size = std::max({from.semi_axes.x, from.semi_axes.y, from.semi_axes.z});
-        const double reach = reach_of(from, domain);
-        result.push_back({from, shape_at(body, t1), reach, reach + size, grain_of(domain.box, size)});
+        const double reach = reach_of(from, domain), graded = graded_distance(start, body);
+        Travel travel{from, shape_at(domain.bodies[body], t1), reach, reach + size, grain_of(domain.box, size)};
+        if (graded > reach && moves(travel)) travel.sized = graded + size;
+        result.push_back(std::move(travel));
     }
     return result;
 }
@@ -136,59 +151,6 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
     return u;
 }
 
-/// Six times the volume of a tet as its corners go along straight lines, as a cubic in the fraction s of the
-/// way: its four Bernstein coefficients on [0, 1].
-std::array<double, 4> volume_along(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de) {
-    const double c0 = determinant(e[0], e[1], e[2]);
-    const double c1 = determinant(de[0], e[1], e[2]) + determinant(e[0], de[1], e[2]) + determinant(e[0], e[1], de[2]);
-    const double c2 =
-        determinant(e[0], de[1], de[2]) + determinant(de[0], e[1], de[2]) + determinant(de[0], de[1], e[2]);
-    const double c3 = determinant(de[0], de[1], de[2]);
-    return {c0, c0 + c1 / 3, c0 + (2 * c1 + c2) / 3, c0 + c1 + c2 + c3};
-}
-
-/// The largest s up to which the cubic with these Bernstein coefficients stays positive; it is positive at 0.
-/// A cubic is positive where its coefficients are; else the interval is halved [de Casteljau].
-double positive_until(const std::array<double, 4>& b, int depth = 0) {
-    if (std::ranges::all_of(b, [](double x) { return x > 0; })) return 1;
-    if (depth == 16 || b[0] <= 0) return 0;
-    const double m = (b[1] + b[2]) / 2;
-    const double l1 = (b[0] + b[1]) / 2, l2 = (l1 + m) / 2, r1 = (b[2] + b[3]) / 2, r2 = (r1 + m) / 2;
-    const double middle = (l2 + r2) / 2;
-    const double left = positive_until({b[0], l1, l2, middle}, depth + 1);
-    if (left < 1) return left / 2;
-    return 0.5 + positive_until({middle, r2, r1, b[3]}, depth + 1) / 2;
-}
-
-/// The share of the way up to which a tet keeps `least` of its volume.
-double positive_share(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de, double least) {
-    auto b = volume_along(e, de);
-    const double kept = least * b[0];
-    for (double& x : b) x -= kept;
-    return positive_until(b);
-}
-
-double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displacement, double least) {
-    const auto& v = mesh.tets[t];
-    std::array<Vec3, 3> e, de;
-    for (int i = 0; i < 3; ++i) {
-        e[at(i)] = mesh.position[v[at(i + 1)]] - mesh.position[v[0]];
-        de[at(i)] = displacement[v[at(i + 1)]] - displacement[v[0]];
-    }
-    return positive_share(e, de, least);
-}
-
-double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& start, const Array<Vertex, Vec3>& place,
-                     double least) {
-    const auto& v = mesh.tets[t];
-    std::array<Vec3, 3> e, de;
-    for (int i = 0; i < 3; ++i) {
-        e[at(i)] = start[v[at(i + 1)]] - start[v[0]];
-        de[at(i)] = place[v[at(i + 1)]] - place[v[0]] - e[at(i)];
-    }
-    return positive_share(e, de, least);
-}
-
 /// Puts the bodies' vertices where they go: rigidly with the body, but for the columns of layers, which stand on
 /// their wall at the end as high as the gaps there let them.
 void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
@@ -228,8 +190,16 @@ bool out_of_reach(std::span<const Travel> travels, const Vec3& x) {
     });
 }
 
-/// Takes in all cells of the surroundings with a vertex in reach of a body, outwards from those that are there. What
-/// has come out of reach stays, until there is too much of it.
+/// Is the target size there the same before and after the step?
+bool keeps_its_size(std::span<const Travel> travels, const Vec3& x) {
+    return std::ranges::none_of(travels, [&](const Travel& travel) {
+        const double least = std::min(squared_norm(x - travel.from.centre), squared_norm(x - travel.to.centre));
+        return least < travel.sized * travel.sized;
+    });
+}
+
+/// Takes in all cells of the surroundings with a vertex that a body moves, or whose target size it changes, outwards
+/// from those that are there. What has come out of reach stays, until there is too much of it.
 void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
                Zone& zone) {
     std::vector<Tet> cells;
@@ -243,7 +213,9 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<cons
     while (!front.empty()) {
         cells.clear();
         for (Vertex v : front) {
-            if ((zone.axes[v] & Zone::rim) == 0 || out_of_reach(travels, mesh.position[v])) continue;
+            if ((zone.axes[v] & Zone::rim) == 0) continue;
+            const Vec3& x = mesh.position[v];
+            if (out_of_reach(travels, x) && keeps_its_size(travels, x)) continue;
             ball(mesh, v, around);
             for (Tet t : around)
                 if (mesh.region[t] == surroundings && !zone.holds.contains(t)) cells.push_back(t);
@@ -266,58 +238,20 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
         const Vertex v = zone.vertices[i];
         if (zone.moves[v] == Zone::with_body) return;
         zone.place[v] = mesh.position[v];
-        if (out_of_reach(travels, mesh.position[v])) return;
+        if (out_of_reach(travels, mesh.position[v])) {
+            if (zone.moves[v] == 0 && !keeps_its_size(travels, mesh.position[v])) zone.moves[v] = Zone::by_size;
+            return;
+        }
         zone.moves[v] = Zone::by_itself;
         zone.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, v));
     });
     list_cells(zone, mesh);
-    if (zone.holds.size() <= too_much * zone.cells.size()) return;
+    if (zone.holds.size() <= too_much * (zone.cells.size() + zone.beyond.size())) return;
     shrink(zone, mesh);
     zone.vertices = zone.has.list();
 }
 
-/// The length of the longest row.
-[[gnu::always_inline]] inline Four longest(const std::array<FourVec3, 3>& rows) {
-    return square_root(greater(greater(squared_norm(rows[0]), squared_norm(rows[1])), squared_norm(rows[2])));
-}
-
-/// Which of four cells keep `least` of their volume on the way without doubt, told by their sizes: a determinant
-/// of rows that are no longer than L and change by no more than D changes by at most (L + D)^3 - L^3 [by
-/// Hadamard's inequality for each of its terms].
-KROPLA_FOR_EACH_PROCESSOR
-void tell_safe(const FourPlaces& from, const FourPlaces& to, double least, std::array<bool, 4>& safe) {
-    const FourTets start = gathered(from), end = gathered(to);
-    const std::array<FourVec3, 3> e = {start.b - start.a, start.c - start.a, start.d - start.a};
-    const FourVec3 da = end.a - start.a;
-    const std::array<FourVec3, 3> de = {end.b - start.b - da, end.c - start.c - da, end.d - start.d - da};
-    const Four l = longest(e), d = longest(de);
-    const Four surplus = (1 - least) * determinant(e[0], e[1], e[2]) - d * (3 * l * (l + d) + d * d);
-    for (std::size_t i = 0; i < 4; ++i) safe[i] = surplus[i] > 0;
-}
-
 }  // namespace
-
-double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<Vertex, Vec3>& displacement,
-                     double least) {
-    double fraction = 1;
-    for (Tet t : cells) fraction = std::min(fraction, safe_fraction(mesh, t, displacement, least));
-    return fraction;
-}
-
-MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least) {
-    std::vector<double> safe(zone.cells.size(), 1);
-    for_all((safe.size() + 3) / 4, [&](std::size_t four) {
-        const std::size_t first = 4 * four;
-        std::array<bool, 4> is_safe;
-        tell_safe(four_cells(zone, mesh, first, start), four_cells(zone, mesh, first, zone.place), least, is_safe);
-        for (std::size_t i = 0; i < 4 && first + i < safe.size(); ++i)
-            if (!is_safe[i]) safe[first + i] = safe_fraction(mesh, zone.cells[first + i], start, zone.place, least);
-    });
-    MoveReport report{true, 1, {}};
-    for (std::size_t c = 0; c < safe.size(); ++c)
-        if (safe[c] < report.fraction) report = {false, safe[c], zone.cells[c]};
-    return report;
-}
 
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
                     double t1, Zone& zone) {

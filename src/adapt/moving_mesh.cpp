@@ -1,11 +1,13 @@
 #include "adapt/moving_mesh.h"
 
+#include "adapt/way.h"
 #include "generate/layers.h"
 #include "mesh/quality.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <utility>
 
 namespace kropla {
@@ -32,6 +34,17 @@ std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
     const auto repeated = std::ranges::unique(vertices);
     vertices.erase(repeated.begin(), repeated.end());
     return vertices;
+}
+
+/// The cells of bodies at the shells of layers inside of them.
+std::vector<Tet> cells_at_inner_shells(const Mesh& mesh) {
+    IndexSet<Tet> cells;
+    for (const PrismLayer& layer : mesh.layers) {
+        if (layer.region != layer.body) continue;
+        for (int column = 0; column < count_columns(layer); ++column)
+            for (Tet t : ball(mesh, column_vertex(layer, column, layer.count))) cells.insert(t);
+    }
+    return cells.list();
 }
 
 /// Of those of the cells that are alive.
@@ -69,6 +82,7 @@ MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& o
       current_(reference_), time_(t), target_time_(t) {
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
         bodies_.push_back(vertices_of(reference_, region_of_body(body)));
+    at_inner_shells_ = cells_at_inner_shells(reference_);
 }
 
 void MovingMesh::begin_step() {
@@ -116,6 +130,8 @@ const Changes& MovingMesh::refine() {
 void MovingMesh::move_boundary(double t) {
     heed(options_.watch);
     target_time_ = t;
+    stuck_ = turned_too_far();
+    if (stuck_) return;
     statistics_.legs = 1;
     place_boundary(current_, domain_, bodies_, time_, t, zone_);
     write_places(zone_, current_);
@@ -123,6 +139,7 @@ void MovingMesh::move_boundary(double t) {
 }
 
 void MovingMesh::optimise() {
+    if (stuck_) return;
     if (optimise_at(target_time_)) way_ = check_way(zone_, current_, before_.position, least_volume_kept);
     if (!way_.arrived) move_in_legs();
 }
@@ -173,13 +190,55 @@ bool MovingMesh::optimise_at(double t) {
 }
 
 std::optional<Refusal> MovingMesh::refusal() const {
+    auto refusal = what_limits();
+    if (refusal && statistics_.refined.given_up > 0)
+        refusal->why += "; the effort allowed for remeshing there was spent";
+    return refusal;
+}
+
+std::optional<Refusal> MovingMesh::what_limits() const {
     if (stuck_) return stuck_;
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;
-    if (way_.arrived) return std::nullopt;
-    return Refusal{describe(before_, way_.limiting, "would be turned inside out on its way"), way_.limiting,
-                   way_.fraction * (target_time_ - time_)};
+    return turned_on_its_way();
+}
+
+/// A body whose cells would all but vanish half-way of a large turn.
+std::optional<Refusal> MovingMesh::turned_too_far() const {
+    for (const Body& body : domain_.bodies) {
+        const double kept = volume_kept_turning(shape_at(body, time_), shape_at(body, target_time_));
+        if (kept >= least_volume_kept) continue;
+        const double turn = std::acos(std::max(-1.0, 2 * kept - 1)), most = std::acos(2 * least_volume_kept - 1);
+        char text[240];
+        std::snprintf(text, sizeof text, "body \"%s\" would turn by %.3g degrees in one step, t = %.6g to %.6g s; at "
+                      "most %.3g are possible", body.name.c_str(), turn * 180 / std::numbers::pi, time_, target_time_,
+                      most * 180 / std::numbers::pi);
+        return Refusal{text, Tet{}, most / turn * (target_time_ - time_)};
+    }
+    return std::nullopt;
+}
+
+/// A cell that does not keep its volume all along its way, though it does in the end.
+std::optional<Refusal> MovingMesh::turned_on_its_way() const {
+    const auto refusal = [&](Tet t, double fraction) {
+        return Refusal{describe(before_, t, "would be turned inside out on its way"), t,
+                       fraction * (target_time_ - time_)};
+    };
+    if (!way_.arrived) return refusal(way_.limiting, way_.fraction);
+    for (Tet t : at_inner_shells_)
+        if (const double safe = safe_fraction(before_, current_, {&t, 1}, least_volume_kept); safe < 1)
+            return refusal(t, safe);
+    for (const Prism& prism : all_prisms(current_)) {
+        const auto from = prism_corners(before_, prism);
+        const double safe = safe_fraction(from, prism_corners(current_, prism), least_volume_kept);
+        if (safe == 1) continue;
+        char text[160];
+        std::snprintf(text, sizeof text, "a prism at (%.5g, %.5g, %.5g) m would be turned inside out on its way",
+                      from[0].x, from[0].y, from[0].z);
+        return Refusal{text, Tet{}, safe * (target_time_ - time_)};
+    }
+    return std::nullopt;
 }
 
 std::optional<Refusal> MovingMesh::narrow_gap() const {
@@ -202,6 +261,7 @@ std::optional<Refusal> MovingMesh::worst_cell() const {
         refusal.limiting = t;
     };
     for (Tet t : zone_.cells) look_at(t, zone_.ratio[t]);
+    for (Tet t : at_inner_shells_) look_at(t, aspect_ratio(current_, t));
     for (Tet t : refined_)
         if (alive(current_, t)) look_at(t, aspect_ratio(current_, t));
     if (!refusal.limiting.exists()) return std::nullopt;
@@ -253,6 +313,7 @@ const Changes& MovingMesh::remesh() {
     changes = remesh(options);
     if (worst_aspect_ratio_of(current_, changes.cells) > options_.floor) {
         // What passed the floor on its way stayed there: taken back, and done again without passing it.
+        statistics_.redone = true;
         note_replaced(changes);
         copy_changed(current_, before_, replaced_.list(), moved_);
         options.passing = std::min(options.passing, options.floor);

@@ -17,6 +17,7 @@ struct StepStatistics {
     Changes optimised;   // (2.4), along with it
     Changes remeshed;    // (2.6), after it
     int legs = 0;        // into which the motion was cut
+    bool redone = false; // whether 2.6 was taken back and done again, without passing the floor on its way
     int cells_touched = 0;
 };
 
@@ -69,9 +70,12 @@ public:
     const Changes& accept();
 
 private:
+    [[nodiscard]] std::optional<Refusal> what_limits() const;
     [[nodiscard]] std::optional<Refusal> narrow_gap() const;
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
+    [[nodiscard]] std::optional<Refusal> turned_too_far() const;
+    [[nodiscard]] std::optional<Refusal> turned_on_its_way() const;
     Changes remesh(const AdaptOptions& options);  // the current mesh
     void move_in_legs();
     void note_turned_over(double reached);
@@ -83,6 +87,7 @@ private:
     Domain domain_;
     AdaptOptions options_;
     std::vector<std::vector<Vertex>> bodies_;  // the vertices of each body's cells
+    std::vector<Tet> at_inner_shells_;         // cells of bodies that do not move rigidly: at the shells of inner layers
     Mesh reference_, before_, current_;
     double time_, target_time_;
     Zone zone_;                      // what the step moves

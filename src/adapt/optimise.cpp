@@ -126,7 +126,7 @@ void measure(Zone& zone, const Mesh& mesh) {
     for_all((count + 3) / 4, [&](std::size_t four) {
         const std::size_t first = 4 * four;
         Four ratios;
-        tet_aspect_ratios(four_cells(zone, mesh, first, zone.place), ratios);
+        tet_aspect_ratios(four_cells(zone.cells, mesh, first, zone.place), ratios);
         for (std::size_t i = 0; i < 4 && first + i < count; ++i) zone.ratio[zone.cells[first + i]] = ratios[i];
     });
 }

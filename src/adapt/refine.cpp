@@ -81,7 +81,7 @@ std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge
         }
     const Vec3 middle = (mesh.position[edge.a] + mesh.position[edge.b]) / 2;
     const Place place = best_place(star, middle, freedom(held), 0.8 * worst_allowed);
-    if (place.worst > worst_allowed) return std::nullopt;
+    if (place.worst > worst_allowed || place.worst == infinity) return std::nullopt;
 
     Cavity cavity;
     cavity.removed = shell.tets;
@@ -132,8 +132,9 @@ private:
 struct Bounds {
     double shortest, longest;
 
-    [[nodiscard]] bool hold(double square, double size) const {
-        return square <= longest * (size * size) && square >= shortest * (size * size);
+    /// What is not a number breaks none.
+    [[nodiscard]] bool broken(double square, double size) const {
+        return square > longest * (size * size) || square < shortest * (size * size);
     }
 };
 
@@ -157,37 +158,44 @@ void find_wrong_edges(const Mesh& mesh, const Zone& zone, Tet t, Bounds bounds, 
     for (const auto& [i, j] : tet_edges) {
         const Vertex a = mesh.tets[t][at(i)], b = mesh.tets[t][at(j)];
         const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
-        if (bounds.hold(square, size)) continue;
+        if (!bounds.broken(square, size)) continue;
         wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});
     }
 }
 
-void find_wrong_edges_of_four(const Mesh& mesh, const Zone& zone, std::size_t first, Bounds bounds,
-                              std::vector<WrongEdge>& wrong) {
+void find_wrong_edges_of_four(const Mesh& mesh, const Zone& zone, std::span<const Tet> cells, std::size_t first,
+                              Bounds bounds, std::vector<WrongEdge>& wrong) {
     std::array<Four, 4> sizes;
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto& v = mesh.tets[zone.cells[std::min(first + i, zone.cells.size() - 1)]];
+        const auto& v = mesh.tets[cells[std::min(first + i, cells.size() - 1)]];
         for (std::size_t k = 0; k < 4; ++k) sizes[k].set(i, zone.size[v[k]]);
     }
     std::array<bool, 4> is_wrong;
-    tell_wrong(four_cells(zone, mesh, first, zone.place), sizes, bounds, is_wrong);
-    for (std::size_t i = 0; i < 4 && first + i < zone.cells.size(); ++i)
-        if (is_wrong[i]) find_wrong_edges(mesh, zone, zone.cells[first + i], bounds, wrong);
+    tell_wrong(four_cells(cells, mesh, first, zone.place), sizes, bounds, is_wrong);
+    for (std::size_t i = 0; i < 4 && first + i < cells.size(); ++i)
+        if (is_wrong[i]) find_wrong_edges(mesh, zone, cells[first + i], bounds, wrong);
 }
 
-/// The edges of the zone's cells that are too long or too short. Crowds are thinned before gaps are filled;
+/// Those of all cells, each as often as it has cells.
+void find_wrong_edges(const Mesh& mesh, const Zone& zone, std::span<const Tet> cells, Bounds bounds,
+                      std::vector<WrongEdge>& wrong) {
+    constexpr std::size_t at_once = 4096;
+    std::vector<std::vector<WrongEdge>> parts((cells.size() + at_once - 1) / at_once);
+    for_all(parts.size(), [&](std::size_t part) {
+        const std::size_t end = std::min(cells.size(), at_once * (part + 1));
+        for (std::size_t i = at_once * part; i < end; i += 4)
+            find_wrong_edges_of_four(mesh, zone, cells, i, bounds, parts[part]);
+    }, 1);
+    for (const auto& part : parts) wrong.insert(wrong.end(), part.begin(), part.end());
+}
+
+/// The edges of the zone's cells, and of those beyond, that are too long or too short. Crowds are thinned before gaps are filled;
 /// the shortest and the longest edges come first.
 std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const Zone& zone, const AdaptOptions& o) {
-    constexpr std::size_t at_once = 4096;
     const Bounds bounds{o.collapse_below * o.collapse_below, o.split_above * o.split_above};
-    std::vector<std::vector<WrongEdge>> parts((zone.cells.size() + at_once - 1) / at_once);
-    for_all(parts.size(), [&](std::size_t part) {
-        const std::size_t end = std::min(zone.cells.size(), at_once * (part + 1));
-        for (std::size_t i = at_once * part; i < end; i += 4)
-            find_wrong_edges_of_four(mesh, zone, i, bounds, parts[part]);
-    }, 1);
     std::vector<WrongEdge> wrong;
-    for (const auto& part : parts) wrong.insert(wrong.end(), part.begin(), part.end());
+    find_wrong_edges(mesh, zone, zone.cells, bounds, wrong);
+    find_wrong_edges(mesh, zone, zone.beyond, bounds, wrong);
     const auto rank = [](double ratio) { return ratio > 1 ? 1 + 1 / ratio : ratio; };
     std::ranges::sort(wrong, {}, [&](const WrongEdge& w) {
         return std::tuple(rank(w.ratio), w.edge.a, w.edge.b, w.cell);

@@ -3,7 +3,7 @@
 // is exact, and where the Delaunay triangulation of the cluster's points lacks one of them, the cluster grows
 // across it: remeshing spreads only where it must. The repair ladder climbs from there ring by ring.
 
-#include "adapt/adapt.h"
+#include "adapt/budget.h"
 #include "base/random.h"
 #include "generate/generate.h"
 #include "generate/sampling.h"
@@ -15,6 +15,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -25,6 +26,10 @@ constexpr double spacing_in_sizes = 0.8;     // of new points, as in the initial
 constexpr double clearance_in_sizes = 0.5;   // of new points from the cluster's boundary facets
 constexpr int tries_per_point = 30;          // random candidates per point that would fit
 constexpr int most_growths = 30;             // of a cluster to take in facets that are not recovered
+constexpr double most_points_per_cell = 10;  // of a cluster; more would be to adapt sizes, which splits do
+constexpr double facets_like_a_cell = 64;    // distances to facets that cost as much as to triangulate a cell
+constexpr double like_a_treatment = 3;       // cells that cost as much to triangulate
+constexpr double treatments_within = 5;      // per bad cell of a filling
 constexpr double least_gain = 1e-3;
 constexpr Patch frozen{box_faces};           // the cluster's boundary, while it is a mesh of its own
 
@@ -88,12 +93,15 @@ double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const V
     return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
 }
 
-/// Is there room for a new point at `x`: nothing nearer than the target spacing, no boundary facet too close?
-bool has_room(const Hole& hole, const PointGrid& taken, const Vec3& x, double size) {
-    const double spacing = spacing_in_sizes * size;
-    if (taken.any_within(x, spacing, 0, std::numeric_limits<double>::infinity())) return false;
-    return std::ranges::all_of(hole.facets, [&](const std::array<int, 3>& f) {
-        return distance_to_triangle(x, hole.points[at(f[0])], hole.points[at(f[1])], hole.points[at(f[2])]) >=
+/// Is a point nearer to `x` than the target spacing?
+bool is_taken(const PointGrid& taken, const Vec3& x, double size) {
+    return taken.any_within(x, spacing_in_sizes * size, 0, std::numeric_limits<double>::infinity());
+}
+
+/// Is a boundary facet too close to `x` for a new point?
+bool is_near_boundary(const Hole& hole, const Vec3& x, double size) {
+    return std::ranges::any_of(hole.facets, [&](const std::array<int, 3>& f) {
+        return distance_to_triangle(x, hole.points[at(f[0])], hole.points[at(f[1])], hole.points[at(f[2])]) <
                clearance_in_sizes * size;
     });
 }
@@ -110,23 +118,42 @@ Vec3 random_place(const Mesh& mesh, Tet t, Random& random) {
     return sum / total;
 }
 
-void fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& at_time, Random& random, Hole& hole,
-                      const Watch* watch) {
+/// How many points of the target spacing fit into the cell; none into one that is turned over.
+double fitting_points(const Mesh& mesh, Tet t, const Snapshot& at_time) {
+    const double size = target_size(at_time, centroid(mesh, t));
+    const double points = volume(mesh, t) / (std::pow(spacing_in_sizes * size, 3) / std::numbers::sqrt2);
+    return points > 0 ? points : 0;
+}
+
+/// Returns false if the budget is spent.
+bool fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& at_time, Random& random, Hole& hole,
+                      Budget& budget, const Watch* watch) {
     PointGrid taken;
     for (const Vec3& p : hole.points) taken.insert(p, target_size(at_time, p));
     for (Tet t : cluster.cells) {
-        const double size = target_size(at_time, centroid(mesh, t));
-        const double fitting = volume(mesh, t) / (std::pow(spacing_in_sizes * size, 3) / std::numbers::sqrt2);
-        const int tries = 1 + static_cast<int>(std::ceil(tries_per_point * fitting));
+        if (aspect_ratio(mesh, t) == std::numeric_limits<double>::infinity()) continue;
+        const int tries = 1 + static_cast<int>(std::ceil(tries_per_point * fitting_points(mesh, t, at_time)));
         for (int i = 0; i < tries; ++i) {
             heed(watch);
             const Vec3 x = random_place(mesh, t, random);
             const double here = target_size(at_time, x);
-            if (!has_room(hole, taken, x, here)) continue;
+            if (is_taken(taken, x, here)) continue;
+            budget.take(static_cast<double>(hole.facets.size()) / facets_like_a_cell);
+            if (budget.spent()) return false;
+            if (is_near_boundary(hole, x, here)) continue;
             hole.points.push_back(x);
             taken.insert(x, here);
         }
     }
+    return true;
+}
+
+/// Has the cluster a boundary at finite places, and are its cells so near to their size that few points fit?
+bool can_be_filled(const Mesh& mesh, const Cluster& cluster, const Hole& hole, const Snapshot& at_time) {
+    double points = 0;
+    for (Tet t : cluster.cells) points += fitting_points(mesh, t, at_time);
+    return points <= most_points_per_cell * static_cast<double>(cluster.cells.size()) &&
+           std::ranges::all_of(hole.points, [](const Vec3& x) { return kropla::is_finite(x); });
 }
 
 std::array<int, 3> rotated_to_least(std::array<int, 3> f) {
@@ -220,7 +247,8 @@ bool grow_across(const Mesh& mesh, const Hole& hole, std::span<const std::size_t
 }
 
 /// The filled hole as a mesh of its own, improved with the facets that stay frozen.
-Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& at_time, const AdaptOptions& options) {
+Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& at_time, const AdaptOptions& options,
+                      Budget& budget) {
     Array<Vertex, Vec3> position;
     for (const Vec3& x : hole.points) position.push_back(x);
     Array<Tet, std::array<Vertex, 4>> tets;
@@ -236,7 +264,8 @@ Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& 
     for (Tet t : mesh.tets.indices()) cells.push_back(t);
     AdaptOptions within = options;
     within.clusters = false;
-    improve(mesh, cells, at_time, within);
+    within.treatments = treatments_within;
+    budget.take(like_a_treatment * improve(mesh, cells, at_time, within).treated);
     return mesh;
 }
 
@@ -273,31 +302,43 @@ Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, con
 }  // namespace
 
 std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, const Snapshot& at_time,
-                                     const AdaptOptions& options) {
+                                     const AdaptOptions& options, Budget& budget) {
     Cluster cluster(tets);
     Random random{options.seed};
     for (int growth = 0; growth < most_growths; ++growth) {
         heed(options.watch);
+        budget.take(static_cast<double>(cluster.cells.size()));
+        if (budget.spent()) return std::nullopt;
         Hole hole = boundary_of(mesh, cluster);
-        fill_with_points(mesh, cluster, at_time, random, hole, options.watch);
+        if (!can_be_filled(mesh, cluster, hole, at_time)) return std::nullopt;
+        if (!fill_with_points(mesh, cluster, at_time, random, hole, budget, options.watch)) return std::nullopt;
         const Filling filling = fill_hole(hole, at_time.box, options.watch);
         if (!filling.missing.empty()) {
             if (!grow_across(mesh, hole, filling.missing, cluster)) return std::nullopt;
             continue;
         }
         if (!filling.closed) return std::nullopt;
-        Cavity cavity = as_cavity(mesh, cluster, hole, improved_filling(hole, filling, at_time, options));
+        const Mesh filled = improved_filling(hole, filling, at_time, options, budget);
+        Cavity cavity = as_cavity(mesh, cluster, hole, filled);
         if (cavity.worst_after < (1 - least_gain) * cavity.worst_before) return cavity;
         return std::nullopt;
     }
     return std::nullopt;
 }
 
+std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, const Snapshot& at_time,
+                                     const AdaptOptions& options) {
+    Budget budget(cells_to_cut_out(tets.size(), options));
+    return cluster_remesh(mesh, std::move(tets), at_time, options, budget);
+}
+
 std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells) {
     Cluster cluster(cells);
+    IndexSet<Vertex> seen;
     std::vector<Tet> around;
     for (Tet t : cells)
         for (Vertex v : mesh.tets[t]) {
+            if (!seen.insert(v)) continue;
             ball(mesh, v, around);
             for (Tet n : around)
                 if (mesh.region[n] == mesh.region[cells.front()]) cluster.add(n);
@@ -314,35 +355,55 @@ std::vector<Tet> whole_region(const Mesh& mesh, Region region) {
     return cells;
 }
 
-/// Climbs from one bad cell: its neighbourhood is remeshed, ring by ring, until its place is below the floor.
-void climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, Changes& changes) {
+/// Climbs from one bad cell: its neighbourhood is remeshed, ring by ring, until its place is below the floor. Returns
+/// whether it is.
+bool climb(Mesh& mesh, Tet bad, const Snapshot& at_time, AdaptOptions options, Budget& budget, Changes& changes) {
     std::vector<Tet> cluster{bad};
-    for (int ring = 1; ring <= options.largest_ring; ++ring) {
+    for (int ring = 1; ring <= options.largest_ring && !budget.spent(); ++ring) {
         cluster = with_ring(mesh, cluster);
         options.seed = random_bits(options.seed, static_cast<std::uint64_t>(ring));
-        const auto cavity = cluster_remesh(mesh, cluster, at_time, options);
+        const auto cavity = cluster_remesh(mesh, cluster, at_time, options, budget);
         if (!cavity || cavity->worst_after > options.floor) continue;
         carry_out(mesh, *cavity, changes);
         ++changes.local_remeshes;
         changes.largest_ring = std::max(changes.largest_ring, ring);
-        return;
+        return true;
     }
-    if (!options.whole_region) return;
-    const auto cavity = cluster_remesh(mesh, whole_region(mesh, mesh.region[bad]), at_time, options);
-    if (!cavity) return;
-    carry_out(mesh, *cavity, changes);
-    ++changes.global_remeshes;
+    return false;
+}
+
+/// The last rung, for each region that has a bad cell: as costly as making its mesh anew, so it is tried once.
+void remesh_regions(Mesh& mesh, const std::vector<Tet>& bad, const Snapshot& at_time, const AdaptOptions& options,
+                    Changes& changes) {
+    std::set<Region> tried;
+    for (Tet t : bad) {
+        if (!alive(mesh, t) || !(aspect_ratio(mesh, t) > options.floor)) continue;
+        if (!tried.insert(mesh.region[t]).second) continue;
+        const auto cavity = cluster_remesh(mesh, whole_region(mesh, mesh.region[t]), at_time, options);
+        if (!cavity) continue;
+        carry_out(mesh, *cavity, changes);
+        ++changes.global_remeshes;
+    }
 }
 
 }  // namespace
 
 Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
     Changes changes;
+    const double allowed = cells_to_cut_out(cells.size(), options);
+    Budget budget(allowed);
+    std::vector<Tet> left;
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (!alive(mesh, cells[i]) || aspect_ratio(mesh, cells[i]) <= options.floor) continue;
         heed(options.watch, "repairing cells", static_cast<double>(i) / static_cast<double>(cells.size()));
-        climb(mesh, cells[i], at_time, options, changes);
+        if (!climb(mesh, cells[i], at_time, options, budget, changes)) left.push_back(cells[i]);
     }
+    if (options.whole_region) remesh_regions(mesh, left, at_time, options, changes);
+    changes.cut_out += static_cast<int>(allowed - budget.left());
+    if (budget.spent())
+        changes.given_up += static_cast<int>(std::ranges::count_if(left, [&](Tet t) {
+            return alive(mesh, t) && aspect_ratio(mesh, t) > options.floor;
+        }));
     return changes;
 }
 

@@ -38,7 +38,7 @@ struct Measure {
         else tet_aspect_ratios(four, ratios);
         Four& values = goal.by_energy ? energies : ratios;
         for (std::size_t i = 0; i < 4; ++i)
-            if (ratios[i] > goal.limit) values.set(i, infinity);
+            if (ratios[i] > goal.limit || ratios[i] == infinity) values.set(i, infinity);
         return values;
     }
     [[nodiscard]] double of_all(std::span<const Corners> tets) const {

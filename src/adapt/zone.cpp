@@ -122,6 +122,7 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
 void shrink(Zone& zone, const Mesh& mesh) {
     IndexSet<Tet> stay;
     for (Tet t : zone.cells) stay.insert(t);
+    for (Tet t : zone.beyond) stay.insert(t);
     IndexSet<Vertex> touched;
     zone.holds.for_each([&](Tet t) {
         if (stay.contains(t)) return;
@@ -147,6 +148,7 @@ void begin_motion(Zone& zone) {
     zone.bodies.clear();
     zone.vertices.clear();
     zone.cells.clear();
+    zone.beyond.clear();
 }
 
 void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
@@ -164,9 +166,12 @@ void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
 
 void list_cells(Zone& zone, const Mesh& mesh) {
     zone.cells.clear();
+    zone.beyond.clear();
     zone.holds.for_each([&](Tet t) {
         const auto& v = mesh.tets[t];
-        if ((zone.moves[v[0]] | zone.moves[v[1]] | zone.moves[v[2]] | zone.moves[v[3]]) != 0) zone.cells.push_back(t);
+        const auto moves = zone.moves[v[0]] | zone.moves[v[1]] | zone.moves[v[2]] | zone.moves[v[3]];
+        if ((moves & (Zone::by_itself | Zone::with_body)) != 0) zone.cells.push_back(t);
+        else if (moves != 0) zone.beyond.push_back(t);
     });
 }
 
@@ -182,10 +187,11 @@ double aspect_ratio(const Zone& zone, const Mesh& mesh, Tet t) {
     return tet_aspect_ratio(zone.place[v[0]], zone.place[v[1]], zone.place[v[2]], zone.place[v[3]]);
 }
 
-FourPlaces four_cells(const Zone& zone, const Mesh& mesh, std::size_t first, const Array<Vertex, Vec3>& places) {
+FourPlaces four_cells(std::span<const Tet> cells, const Mesh& mesh, std::size_t first,
+                      const Array<Vertex, Vec3>& places) {
     FourPlaces tets;
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto& v = mesh.tets[zone.cells[std::min(first + i, zone.cells.size() - 1)]];
+        const auto& v = mesh.tets[cells[std::min(first + i, cells.size() - 1)]];
         for (std::size_t k = 0; k < 4; ++k) tets[i][k] = &places[v[k]];
     }
     return tets;

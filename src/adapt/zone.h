@@ -13,7 +13,7 @@ struct Pull {
     double weight;
 };
 
-/// A part of the surroundings that is moved as a whole, and what its motion asks for again and again. Nothing in the
+/// A part of the surroundings that is moved as a whole, with the cells beyond it whose target size changes, and what its motion asks for again and again. Nothing in the
 /// mesh changes before `write_places`. To be kept from step to step: `follow` brings it up to date, and looks again
 /// only at what was replaced. Arrays are at least as long as the mesh's and hold something where the zone is.
 struct Zone {
@@ -26,14 +26,15 @@ struct Zone {
     std::vector<Vertex> bodies;            // vertices that move with a body
     std::vector<Vertex> vertices;          // of all cells, in ascending order
     std::vector<Tet> cells;                // with a vertex that moves, in ascending order
-    Array<Vertex, unsigned char> moves;    // whether a vertex takes part: 0, by_itself, or with_body
+    std::vector<Tet> beyond;               // of which no vertex moves, but the target size changes, likewise
+    Array<Vertex, unsigned char> moves;    // whether a vertex takes part: 0, by_itself, with_body, or by_size
     Array<Vertex, Vec3> place;             // where it is to go [m]
     Array<Vertex, double> size;            // the target size there [m]
     Array<Tet, double> ratio;              // of a cell of `cells`: its aspect ratio at `place`
     Array<Tet, Pull> pull;                 // room for optimise_places
 
     static constexpr unsigned char all_axes = 7, rim = 8;  // rim: some of its cells are not in the zone
-    static constexpr unsigned char by_itself = 1, with_body = 2;
+    static constexpr unsigned char by_itself = 1, with_body = 2, by_size = 4;  // by_size: it does not move
 };
 
 /// Takes cells of one region in. Their vertices stay on the faces of the box they lie on; those that have cells out
@@ -42,7 +43,7 @@ void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
 /// The slots of `replaced` have lost their cells or have others, which join the zone if they are of the surroundings.
 /// The mesh may have fewer slots than before.
 void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced);
-/// Leaves out all cells but those listed in `cells`.
+/// Leaves out all cells but those listed in `cells` and `beyond`.
 void shrink(Zone& zone, const Mesh& mesh);
 void clear(Zone& zone);
 
@@ -50,13 +51,13 @@ void clear(Zone& zone);
 void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
 /// Nothing moves.
 void begin_motion(Zone& zone);
-/// Lists the cells with a vertex that moves.
+/// Lists the cells with a vertex that moves, and those beyond.
 void list_cells(Zone& zone, const Mesh& mesh);
 /// Asks for the target sizes where the vertices are to go.
 void find_sizes(Zone& zone, const Snapshot& at_time);
 
 /// The corners of four cells from the `first` on, at `places`; past the last cell, that one again.
-[[nodiscard]] FourPlaces four_cells(const Zone& zone, const Mesh& mesh, std::size_t first,
+[[nodiscard]] FourPlaces four_cells(std::span<const Tet> cells, const Mesh& mesh, std::size_t first,
                                     const Array<Vertex, Vec3>& places);
 [[nodiscard]] double aspect_ratio(const Zone& zone, const Mesh& mesh, Tet t);
 void star_of_ball(const Zone& zone, const Mesh& mesh, Vertex v, std::vector<StarFacet>& star);

@@ -57,7 +57,8 @@ double excess(const SizeField& size, double depth) {
 }  // namespace
 
 double estimate_tets(const Domain& domain) {
-    const Snapshot at = snapshot(domain, 0);
+    Snapshot at = snapshot(domain, 0);
+    at.size.far = largest_size(at.box, at.size);
     const Vec3 span = at.box.max - at.box.min;
     const double cell = std::max({span.x, span.y, span.z}) / cells_across;
     const auto count = [&](double length) { return std::max(1, static_cast<int>(std::ceil(length / cell))); };

@@ -17,6 +17,8 @@ double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 inline double square_root(double a) { return std::sqrt(a); }
 using kropla::square_root;
 
@@ -50,8 +52,8 @@ template <class Number>
 double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const auto shape = shape_of(b - a, c - a, d - a);
     const bool positive = shape.v6 > 0 && filter::certain(shape.v6, shape.uu, shape.vv, shape.ww);
-    if (!positive && orient3d(a, b, c, d) <= 0) return std::numeric_limits<double>::infinity();
-    return shape.ratio;
+    if (!positive && !(orient3d(a, b, c, d) > 0)) return infinity;
+    return shape.ratio > 0 ? shape.ratio : infinity;  // else not a number: of what no double can hold
 }
 
 namespace {
@@ -61,7 +63,9 @@ namespace {
     const auto& [a, b, c, d] = tets;
     const auto shape = shape_of(b - a, c - a, d - a);
     ratios = shape.ratio;
-    if (all_greater(shape.v6, 0) && filter::all_certain(shape.v6, shape.uu, shape.vv, shape.ww)) return shape;
+    if (all_greater(shape.v6, 0) && filter::all_certain(shape.v6, shape.uu, shape.vv, shape.ww) &&
+        all_greater(ratios, 0))
+        return shape;
     for (std::size_t i = 0; i < 4; ++i)
         ratios.set(i, tet_aspect_ratio(one_of(a, i), one_of(b, i), one_of(c, i), one_of(d, i)));
     return shape;

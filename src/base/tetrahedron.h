@@ -10,7 +10,7 @@ namespace kropla {
 [[nodiscard]] double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// The aspect ratio R/r of the tet: circumradius by inradius; 3 is perfect. Infinite unless the tet is
-/// positively oriented by the exact predicate.
+/// positively oriented by the exact predicate, and where a corner is not finite; never not a number.
 [[nodiscard]] double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// The corners of four tets.

@@ -49,8 +49,14 @@ double outward_shift(const Shape& shape, double size) {
     return share * size * (size / least_curvature_radius(shape));
 }
 
+double largest_size(const Box& box, const SizeField& size) {
+    constexpr double most_in_widths = 1.0;
+    const Vec3 width = box.max - box.min;
+    return std::min(size.far, most_in_widths * std::min({width.x, width.y, width.z}));
+}
+
 double target_size(const Snapshot& at, const Vec3& x) {
-    double least = at.size.far;
+    double least = largest_size(at.box, at.size);
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
         const double rise = at.size.growth * std::abs(signed_distance(at.shapes[body], x));
         least = std::min(least, surface_size(at, body) + rise);

@@ -52,7 +52,8 @@ struct Body {
     std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
 };
 
-/// The target edge length at distance R from the nearest body: min(far, surface + growth * R).
+/// The target edge length at distance R from the nearest body: min(far, surface + growth * R), and nowhere more than
+/// `largest_size`.
 struct SizeField {
     double surface = 2e-4;  // [m]
     double growth = 0.1;    // [-] rise per metre of distance, 0 ... 1
@@ -86,6 +87,9 @@ struct Snapshot {
 /// layer ends in so thin a prism, as asked, that the first tets on triangles of that size would be more than
 /// twice as large, by the cube roots of their volumes.
 [[nodiscard]] double surface_size(const Snapshot& at, std::size_t body);
+/// The largest target size in the box [m]: size.far, or less where the box is so thin that cells of that size would
+/// reach from one wall to the opposite one.
+[[nodiscard]] double largest_size(const Box& box, const SizeField& size);
 /// The target edge length at x [m]: the least that SizeField gives for a body at its surface_size.
 [[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
 

@@ -2,6 +2,8 @@
 
 #include "generate/box.h"
 
+#include "base/error.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +26,8 @@ void space_evenly(const Snapshot& at, const Vec3& start, int axis, double end, s
     std::vector<double> places = {start[axis]}, integral = {0};
     for (Vec3 x = start; x[axis] < end;) {
         const double ds = std::min(step * target_size(at, x), end - x[axis]);
+        if (!(x[axis] + ds > x[axis]))
+            throw DomainError("the box is too far from the origin for cells of so small a size");
         Vec3 middle = x;
         middle[axis] += 0.5 * ds;
         integral.push_back(integral.back() + ds / target_size(at, middle));

@@ -169,8 +169,11 @@ std::vector<Cell> open_parts(const std::vector<Cell>& cells, const SampleRule& r
 
 std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken, Random& random,
                             const Watch* watch) {
+    constexpr std::size_t most_throws = 1000;  // per cell to begin with; a few dozen do
     std::vector<Vec3> found;
-    for (std::vector<Cell> open = first_cells(room, rule, taken, watch); !open.empty();) {
+    std::vector<Cell> open = first_cells(room, rule, taken, watch);
+    for (std::size_t left = most_throws * open.size(); !open.empty() && open.size() <= left;) {
+        left -= open.size();
         shuffle_cells(open, random);
         for (std::size_t i = 0; i < open.size(); ++i) {
             if (i % cells_at_once == 0) heed(watch);

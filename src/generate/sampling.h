@@ -46,8 +46,8 @@ struct SampleRule {
 };
 
 /// Fills `room`, which may be flat, with random points until none can be added, but in gaps narrower than
-/// 1e-4 spacings. The new points are filed in `taken`, whose points count as neighbours. Throws Interrupted if the
-/// watch says so.
+/// 1e-4 spacings, or in those that are left after a thousand throws per cell of the size of the spacing. The new points
+/// are filed in `taken`, whose points count as neighbours. Throws Interrupted if the watch says so.
 [[nodiscard]] std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& taken,
                                           Random& random, const Watch* watch = nullptr);
 

@@ -123,8 +123,11 @@ void move_points(Skin& skin, const Array<Vertex, Vec3>& places) {
         turned = false;
         for (const auto& [i, j, k] : skin.triangles) {
             if (faces_outwards(skin, i, j, k)) continue;
-            for (Vertex v : {i, j, k}) skin.points[v] = old[v];
-            turned = true;
+            for (Vertex v : {i, j, k}) {
+                if (skin.points[v] == old[v]) continue;
+                skin.points[v] = old[v];
+                turned = true;
+            }
         }
     }
 }

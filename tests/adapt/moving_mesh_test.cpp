@@ -197,6 +197,31 @@ TEST(MovingMesh, RefusesAGiantStepAndSaysWhy) {
     EXPECT_EQ(moving.refine().cells_replaced, 0);  // the trouble is over
 }
 
+// Here nothing repairs what an operator for the sake of size has made as bad as it may.
+TEST(MovingMesh, WhatPassesTheFloorAndStaysThereIsTakenBack) {
+    const Domain domain = crossing_sphere();
+    AdaptOptions careless{.passing = 1e6, .floor = 7, .clusters = false, .largest_ring = 0, .whole_region = false};
+    AdaptOptions careful = careless;
+    careful.passing = careful.floor;
+    int redone = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        MovingMesh moving(domain, improved_mesh(domain, seed), 0, careless);
+        for (int i = 0; i < 10; ++i) {
+            MovingMesh other(domain, moving.reference(), moving.time(), careful);
+            ASSERT_GT(step(moving, 1.0 / 15), 0);
+            EXPECT_LE(worst_of(moving.reference()), careless.floor) << "step " << i;
+            EXPECT_EQ(verify(moving.reference()), "") << "step " << i;
+            if (!moving.statistics().redone) continue;
+            ++redone;
+            step(other, 1.0 / 15);
+            EXPECT_FALSE(other.statistics().redone);
+            EXPECT_EQ(moving.reference(), other.reference()) << "step " << i;
+        }
+    }
+    EXPECT_GE(redone, 1);
+}
+
 TEST(MovingMesh, SameInputSameMeshes) {
     const Domain domain = crossing_sphere();
     const auto run = [&] {
