@@ -64,6 +64,7 @@ HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat&
     written.sources.assign(names.size(), "");
     for (std::size_t r = 0; r < names.size(); ++r) {
         heat.regions.push_back(read_region(regions.table(names[r]), probe, written.sources[r]));
+        heat.regions[r].name = names[r];
         heat.regions[r].carried = r == 0 ? Carried::at_rest : Carried::with_mesh;
     }
 
