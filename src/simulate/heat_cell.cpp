@@ -61,6 +61,7 @@ CellSystem<n> conduction(const Cell<n>& cell) {
             }
             const double lumped = point.volume * means.value[i];
             system.row_sum[i] += cell.capacity * lumped;
+            system.held[i] += cell.capacity * lumped;
             system.right[i] += cell.capacity * (lumped * cell.old[i] - gained * old_product) +
                                cell.dt * lumped * cell.source[i];
         }

@@ -24,6 +24,7 @@ template <std::size_t n>
 struct CellSystem {
     std::array<std::array<double, n>, n> matrix = {};  // [J/K] A off its diagonal; what is on it is of no matter
     std::array<double, n> row_sum = {};                // [J/K] of A
+    std::array<double, n> held = {};                   // [J/K] of it, by the mass that is there
     std::array<double, n> right = {};                  // [J]
 };
 

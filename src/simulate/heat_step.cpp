@@ -158,6 +158,7 @@ LinearSystem heat_system(const HeatStep& step, const Cells& cells, const Numberi
         for (std::size_t i = 0; i < vertices.size(); ++i) {
             add_to_right(system, numbering.row[vertices[i]], part.right[i]);
             add_to_row_sum(system, numbering.row[vertices[i]], part.row_sum[i]);
+            add_to_held(system, numbering.row[vertices[i]], part.held[i]);
         }
     });
     add_fluxes(step.current, cells.tets, step.options, step.dt, boundary.flux, numbering, system);

@@ -70,7 +70,7 @@ LinearSystem empty_system(const Mesh& mesh, const Cells& cells, const Numbering&
     system.begin = std::move(coupled.begin);
     system.column = std::move(coupled.column);
     system.value.assign(system.column.size(), 0.0);
-    for (auto* per_row : {&system.row_sum, &system.right, &system.guess, &system.negligible})
+    for (auto* per_row : {&system.row_sum, &system.right, &system.guess, &system.negligible, &system.held})
         per_row->assign(static_cast<std::size_t>(rows), 0.0);
     return system;
 }
@@ -104,6 +104,10 @@ void add_to_negligible(LinearSystem& system, int row, double value) {
     if (owns(system, row)) system.negligible[local(system, row)] += value;
 }
 
+void add_to_held(LinearSystem& system, int row, double value) {
+    if (owns(system, row)) system.held[local(system, row)] += value;
+}
+
 double row_size(const LinearSystem& system, std::size_t owned_row) {
     double size = std::abs(system.row_sum[owned_row]);
     for (PetscInt k = system.begin[owned_row]; k < system.begin[owned_row + 1]; ++k)
@@ -115,7 +119,7 @@ void fix_unknown(LinearSystem& system, int row, double value) {
     system.closed = false;
     if (!owns(system, row)) return;
     const std::size_t r = local(system, row);
-    system.row_sum[r] = row_size(system, r);
+    system.row_sum[r] = system.held[r] = row_size(system, r);
     system.right[r] = system.row_sum[r] * value;
     system.guess[r] = value;
     std::fill(system.value.begin() + system.begin[r], system.value.begin() + system.begin[r + 1], 0.0);

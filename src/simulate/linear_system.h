@@ -28,6 +28,7 @@ struct LinearSystem {
     std::vector<double> row_sum;       // per owned row
     std::vector<double> right, guess;  // per owned row
     std::vector<double> negligible;    // per owned row: a residual of no weight, in units of `right`
+    std::vector<double> held;          // per owned row, of its sum: what it has by itself, whatever is exchanged
     bool closed = true;                // no unknown is fixed, of any rank
 
     [[nodiscard]] int rows() const { return static_cast<int>(right.size()); }
@@ -41,6 +42,7 @@ struct LinearSystem {
 void add_to_right(LinearSystem& system, int row, double value);
 void add_to_row_sum(LinearSystem& system, int row, double value);
 void add_to_negligible(LinearSystem& system, int row, double value);
+void add_to_held(LinearSystem& system, int row, double value);
 
 /// Adds the matrix of a cell with these vertices, off its diagonal.
 void add_to(LinearSystem& system, const Numbering& numbering, std::span<const Vertex> vertices,

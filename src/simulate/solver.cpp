@@ -265,11 +265,14 @@ private:
 
     /// BoomerAMG has no other way in than options; those that the user gave stand.
     static void set_multigrid(const SolverChoice& choice) {
-        constexpr std::array<std::array<const char*, 2>, 5> defaults = {{{"coarsen_type", "HMIS"},
-                                                                         {"interp_type", "ext+i"},
-                                                                         {"P_max", "4"},
-                                                                         {"strong_threshold", "0.7"},
-                                                                         {"agg_nl", "1"}}};
+        constexpr std::array<std::array<const char*, 2>, 7> defaults = {
+            {{"coarsen_type", "HMIS"},
+             {"interp_type", "ext+i"},
+             {"P_max", "4"},
+             {"strong_threshold", "0.5"},
+             {"agg_nl", "1"},
+             {"relax_type_down", "SOR/Jacobi"},  // one sweep each way, symmetric together
+             {"relax_type_up", "backward-SOR/Jacobi"}}};
         for (const auto& [name, value] : defaults) {
             const std::string option = "-" + choice.prefix + "pc_hypre_boomeramg_" + name;
             PetscBool given = PETSC_FALSE;
@@ -325,7 +328,7 @@ LinearSystem chains_of_unknowns() {
     }
     system.begin.push_back(static_cast<PetscInt>(system.column.size()));
     system.row_sum.assign(rows, 0.1);
-    system.right = system.guess = system.negligible = std::vector<double>(rows, 0.0);
+    system.right = system.guess = system.negligible = system.held = std::vector<double>(rows, 0.0);
     return system;
 }
 
@@ -370,7 +373,7 @@ void rehearse(const Ranks& ranks) {
 Preconditioner preconditioner_for(const Ranks& ranks, const LinearSystem& system) {
     double most = 0;
     for (std::size_t r = 0; r < system.right.size(); ++r)
-        most = std::max(most, row_size(system, r) / std::abs(system.row_sum[r]));
+        most = std::max(most, row_size(system, r) / system.held[r]);
     return largest(ranks, most) > several_cells ? Preconditioner::multigrid : Preconditioner::factors;
 }
 

@@ -8,6 +8,12 @@
 
 namespace kropla {
 
+/// A quantity that is the same everywhere and always: there is nothing to integrate.
+struct Constant {
+    double value;
+    double operator()(const Vec3&, double) const { return value; }
+};
+
 /// Where a vertex goes, straight, during a step [m].
 struct Way {
     Vec3 from, to;
