@@ -1,11 +1,18 @@
 #include "app/case_heat.h"
 
+#include "simulate/step_mean.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace kropla {
 namespace {
+
+Quantity quantity(const Formula& formula) {
+    if (!formula.written.starts_with('"')) return Constant{formula.value(0)};
+    return [f = formula.value](const Vec3& place, double t) { return f(t, place); };
+}
 
 HeatRegion read_region(const CaseTable& table, const Vec3& probe, std::string& written_source) {
     table.allow({"conductivity", "density", "specific_heat", "initial", "source"});
@@ -16,7 +23,7 @@ HeatRegion read_region(const CaseTable& table, const Vec3& probe, std::string& w
     if (!table.has("source")) return region;
     const Formula source = table.formula("source", Variables::time_and_place, probe);
     written_source = source.written;
-    region.source = [f = source.value](const Vec3& place, double t) { return f(t, place); };
+    region.source = quantity(source);
     return region;
 }
 
@@ -36,8 +43,7 @@ HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
     const char* name = is_value ? "value" : "flux";
     const Formula formula = face.formula(name, Variables::time_and_place, probe);
     written = fmt::format("{{ {} = {} }}", name, formula.written);
-    return {is_value ? HeatFace::Kind::value : HeatFace::Kind::flux,
-            [f = formula.value](const Vec3& place, double t) { return f(t, place); }};
+    return {is_value ? HeatFace::Kind::value : HeatFace::Kind::flux, quantity(formula)};
 }
 
 /// A place that is special to no formula: expressions are tried there.
@@ -64,6 +70,7 @@ HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat&
     written.sources.assign(names.size(), "");
     for (std::size_t r = 0; r < names.size(); ++r) {
         heat.regions.push_back(read_region(regions.table(names[r]), probe, written.sources[r]));
+        heat.regions[r].name = names[r];
         heat.regions[r].carried = r == 0 ? Carried::at_rest : Carried::with_mesh;
     }
 

@@ -17,7 +17,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
@@ -208,10 +207,9 @@ int carry_out(const CLI::App& app, const Request& request) {
 }  // namespace
 
 PartedArguments part_arguments(const std::vector<std::string>& arguments) {
-    constexpr std::array<std::string_view, 9> beginnings = {
-        "-ksp_", "-pc_", "-mat_", "-vec_", "-log_", "-sub_", "-potential_", "-options_", "-malloc_"};
-    const auto is_solvers = [&](std::string_view word) {
-        return std::ranges::any_of(beginnings, [&](std::string_view b) { return word.starts_with(b); });
+    // Our own words have one letter or two dashes.
+    const auto is_solvers = [](const std::string& word) {
+        return word.size() > 2 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
     };
     const auto is_value = [](const std::string& word) {  // -1e-3 is a value, -ksp_monitor and --out are not
         return word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])) ||

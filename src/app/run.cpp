@@ -7,6 +7,7 @@
 #include "app/interrupt.h"
 #include "app/run_folder.h"
 #include "app/run_output.h"
+#include "app/solver_options.h"
 #include "app/step.h"
 #include "base/error.h"
 #include "report/page.h"
@@ -17,6 +18,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -100,6 +102,8 @@ private:
     void write(const StepReport& report, std::chrono::steady_clock::time_point begin) {
         const State& state = place_.state;
         output_.write_step(place_.step, report, state);
+        if (!report.beyond_bounds.empty() && !std::exchange(warned_, true))
+            output_.say(("warning: " + report.beyond_bounds).c_str());
         if (place_.step % it_.output.every == 0 || at_end(place_, it_.time)) {
             output_.write_frame(place_.step, state);
             output_.write_checkpoint(checkpoint());
@@ -113,6 +117,7 @@ private:
     Place place_;
     RunOutput& output_;
     bool test_rollback_;
+    bool warned_ = false;  // of temperatures beyond their bounds: once
 };
 
 /// Does what all ranks do alike. A rank that its watch or an error has ended tells the others, who hear of it where
@@ -132,7 +137,8 @@ auto together(const Ranks& ranks, Deed deed) {
 }
 
 /// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint.
-int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks) {
+int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks,
+               const std::filesystem::path& case_file) {
     try {
         together(ranks, [&] { loop.run(); });
         return 0;
@@ -142,6 +148,9 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks) {
         output.write_checkpoint(loop.checkpoint());
         output.say("interrupted: a checkpoint is written; go on with --resume");
         return 130;
+    } catch (const CaseError& error) {  // a quantity that has no value: first asked for here
+        output.write_checkpoint(loop.checkpoint());
+        throw CaseError(fmt::format("{}: {}", case_file.string(), error.what()));
     } catch (const std::runtime_error&) {
         output.write_checkpoint(loop.checkpoint());
         throw;
@@ -172,7 +181,9 @@ int run_with(const RunOptions& options, const Ranks& ranks) {
     RunOutput output(options, it, ranks.rank == 0, place.step, place.state);
     if (!options.resume) output.write_checkpoint(checkpoint_of(place, it));
     TimeLoop loop(it, ranks, std::move(place), output, options.test_rollback);
-    const int code = run_to_end(loop, output, ranks);
+    const int code = run_to_end(loop, output, ranks, options.case_file);
+    for (const std::string& option : unused_solver_options(options.solver_options))
+        output.say(fmt::format("{} was never used: nothing that was chosen asks for it", option).c_str());
     if (ranks.rank == 0) write_report(options.out);
     return code;
 }
@@ -199,6 +210,7 @@ int run(const RunOptions& options) {
     if (options.threads > 0)
         threads.emplace(global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
     try {
+        check_solver_options(options.solver_options);
         const int code = run_with(options, ranks);
         return ranks.rank == 0 ? code : 0;
     } catch (const FileError& error) {

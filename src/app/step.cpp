@@ -82,6 +82,23 @@ void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, cons
     moving.optimise();                         // 2.4
 }
 
+/// A sentence if a temperature is noticeably beyond what conduction and convection can make; else empty.
+std::string beyond_bounds(const HeatExtremes& e, double t) {
+    constexpr double noticeable = 1e-3;  // [-] of what lies between the bounds; less is of no consequence
+    const auto beyond = [&](const Extreme& extreme, double by, double bound, const char* side) {
+        return fmt::format("the temperature is {:.3g} K {} {:.6g} K, which the equation allows, at ({:.4g}, {:.4g}, "
+                           "{:.4g}) m, t = {:.4g} s: cells are too coarse for the step there",
+                           by, side, bound, extreme.place.x, extreme.place.y, extreme.place.z, t);
+    };
+    const double lower = std::max(e.lower, std::min(e.least.value, e.upper)),
+                 upper = std::min(e.upper, std::max(e.most.value, e.lower));
+    const double most = noticeable * (upper - lower);
+    const double below = e.lower - e.least.value, above = e.most.value - e.upper;
+    if (below > most && below >= above) return beyond(e.least, below, e.lower, "below");
+    if (above > most) return beyond(e.most, above, e.upper, "above");
+    return "";
+}
+
 /// Stage 2.5.
 void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, const Ranks& ranks,
               double dt, StepReport& report) {
@@ -89,6 +106,7 @@ void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const C
     if (!it.heat) return;
     const HeatReport heat =
         step_heat(ranks, moving.before(), moving.current(), *it.heat, fields.front(), moving.time(), dt);
+    report.beyond_bounds = beyond_bounds(heat.extremes, moving.time() + dt);
     report.heat_from_bodies.clear();
     for (const SurfaceFlux& flux : heat.surfaces) report.heat_from_bodies.push_back(flux.total);
 }

@@ -30,6 +30,7 @@ struct StepReport {
     TransferReport transfer;            // of all fields and transfers of the step
     double transferred_fraction = 0;    // [-] of the cells, that took part in the largest of them
     std::vector<double> heat_from_bodies = {};  // [W] through the surface of body 1, 2, ...
+    std::string beyond_bounds = {};    // if the temperature is: how far and where
     std::string refused;               // why the last refused attempt was, if one was
 };
 

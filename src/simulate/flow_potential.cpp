@@ -4,7 +4,7 @@
 #include "simulate/flow_potential.h"
 
 #include "simulate/elements.h"
-#include "simulate/linear_system.h"
+#include "simulate/solver.h"
 
 #include <algorithm>
 #include <numeric>
@@ -43,18 +43,24 @@ Array<Vertex, double> swept_by_boundary(const Step& step, Region region) {
     return swept;
 }
 
-/// Takes the sum out of `swept`, from each vertex after its share of the volume: else there is no solution.
-void balance(const Mesh& mesh, const Cells& cells, Array<Vertex, double>& swept) {
-    double volume = 0;
-    for_each_cell(cells, [&](const auto& cell) { volume += total_volume(cell_points(corners(mesh, cell))); });
-    const double rate = std::accumulate(swept.begin(), swept.end(), 0.0) / volume;
+/// The integrals of phi_i over the cells [m^3].
+Array<Vertex, double> shares_of_volume(const Mesh& mesh, const Cells& cells) {
+    Array<Vertex, double> share(mesh.position.size(), 0.0);
     for_each_cell(cells, [&](const auto& cell) {
         const auto vertices = cell_vertices(mesh, cell);
         const auto points = cell_points(corners(mesh, cell));
         for (std::size_t k = 0; k < points.size(); ++k)
             for (std::size_t i = 0; i < vertices.size(); ++i)
-                swept[vertices[i]] -= rate * points[k].volume * shape_means<vertices.size()>[k].value[i];
+                share[vertices[i]] += points[k].volume * shape_means<vertices.size()>[k].value[i];
     });
+    return share;
+}
+
+/// Takes the sum out of `swept`, from each vertex after its share of the volume: else there is no solution.
+void balance(const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
+    const double rate = std::accumulate(swept.begin(), swept.end(), 0.0) /
+                        std::accumulate(share.begin(), share.end(), 0.0);
+    for (Vertex v : swept.indices()) swept[v] -= rate * share[v];
 }
 
 /// The integrals of grad phi_i . grad phi_j [m].
@@ -69,8 +75,11 @@ std::array<std::array<double, n>, n> stiffness(const CellPoints<n>& points) {
     return matrix;
 }
 
+/// A residual is gas lost or gained. Of no weight is what would fill the vertex's share of the volume in a
+/// step: the tolerance then is the relative change of a constant state.
 LinearSystem potential_system(const Mesh& mesh, const Cells& cells, const Numbering& numbering, int rank,
-                              const Array<Vertex, double>& swept) {
+                              const Array<Vertex, double>& swept, const Array<Vertex, double>& share,
+                              double dt) {
     const Cells mine = cells_of_rank(mesh, cells, numbering, rank);
     LinearSystem system = empty_system(mesh, mine, numbering, rank);
     for_each_cell(mine, [&](const auto& cell) {
@@ -79,6 +88,7 @@ LinearSystem potential_system(const Mesh& mesh, const Cells& cells, const Number
     });
     for (std::size_t r = 0; r < numbering.vertex.size(); ++r) {
         add_to_right(system, static_cast<int>(r), swept[numbering.vertex[r]]);
+        add_to_negligible(system, static_cast<int>(r), share[numbering.vertex[r]] / dt);
     }
     return system;
 }
@@ -96,16 +106,19 @@ DisplacedFlow solve_displaced_flow(const Ranks& ranks, const Mesh& before, const
                                    const std::vector<Region>& resting, double dt) {
     DisplacedFlow flow{Array<Region, Array<Vertex, double>>(count_regions(current)), 0};
     const Step step{before, current, dt};
-    // The residual is gas lost or gained; 1e-14 of what the bodies sweep keeps a constant state to rounding.
-    const SolverChoice choice{.name = "potential flow", .prefix = "potential_", .method = "cg",
-                              .preconditioner = "sor", .relative_tolerance = 1e-14, .singular = true};
+    const SolverChoice choice{.name = "potential flow",
+                              .prefix = "potential_",
+                              .preconditioner = Preconditioner::multigrid,
+                              .tolerance = 5e-14,
+                              .potential = true};
     for (Region region : resting) {
         Array<Vertex, double> swept = swept_by_boundary(step, region);
         if (std::ranges::all_of(swept, [](double s) { return s == 0; })) continue;
         const Cells cells = living_cells(current, region);
-        balance(current, cells, swept);
+        const Array<Vertex, double> share = shares_of_volume(current, cells);
+        balance(share, swept);
         const Numbering numbering = number_vertices(current, cells, ranks.count);
-        const auto system = potential_system(current, cells, numbering, ranks.rank, swept);
+        const auto system = potential_system(current, cells, numbering, ranks.rank, swept, share, dt);
         const Solution potential = solve(ranks, system, choice);
         flow.potential[region] = at_vertices(current, numbering, potential.value);
         flow.iterations += potential.iterations;

@@ -12,36 +12,40 @@
 namespace kropla {
 namespace {
 
-constexpr std::array<const char*, 6> face_names = {"x min", "x max", "y min", "y max", "z min", "z max"};
-
-std::string of_region(std::size_t region) {
-    return region == 0 ? " of the surroundings" : " of body " + std::to_string(region);
-}
-
 std::string text(double value) {
     std::ostringstream out;
     out << value;
     return out.str();
 }
 
-void check_positive(double value, const std::string& key, std::size_t region) {
+void check_positive(double value, const std::string& key) {
     if (std::isfinite(value) && value > 0) return;
-    throw CaseError("heat." + key + of_region(region) + " must be positive, got " + text(value));
+    throw CaseError(key + " must be positive, got " + text(value));
 }
 
-void check_region(const HeatRegion& region, std::size_t number) {
-    check_positive(region.material.conductivity, "conductivity", number);
-    check_positive(region.material.density, "density", number);
-    check_positive(region.material.specific_heat, "specific_heat", number);
-    if (!std::isfinite(region.initial)) {
-        throw CaseError("heat.initial" + of_region(number) + " must be finite, got " + text(region.initial));
-    }
+void check_region(const HeatRegion& region, const std::string& key) {
+    check_positive(region.material.conductivity, key + ".conductivity");
+    check_positive(region.material.density, key + ".density");
+    check_positive(region.material.specific_heat, key + ".specific_heat");
+    if (!std::isfinite(region.initial))
+        throw CaseError(key + ".initial must be finite, got " + text(region.initial));
 }
 
 }  // namespace
 
+std::string region_key(const HeatOptions& options, std::size_t region) {
+    const std::string& name = options.regions[region].name;
+    if (!name.empty()) return "heat.region." + name;
+    return region == 0 ? "heat.region.surroundings" : "heat.region.(body " + std::to_string(region) + ")";
+}
+
+std::string face_key(std::size_t face) {
+    constexpr std::array<const char*, 6> names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+    return std::string("heat.face.") + names[face];
+}
+
 void check_heat(const HeatOptions& options, const Mesh& mesh) {
-    for (std::size_t i = 0; i < options.regions.size(); ++i) check_region(options.regions[i], i);
+    for (std::size_t i = 0; i < options.regions.size(); ++i) check_region(options.regions[i], region_key(options, i));
     const std::size_t needed = count_regions(mesh);
     if (options.regions.size() < needed) {
         throw CaseError("heat: the mesh has " + std::to_string(needed) +
@@ -51,8 +55,7 @@ void check_heat(const HeatOptions& options, const Mesh& mesh) {
         const HeatFace& face = options.faces[f];
         if (face.kind == HeatFace::Kind::insulated || face.quantity) continue;
         const bool is_value = face.kind == HeatFace::Kind::value;
-        throw CaseError(std::string("heat.") + (is_value ? "value" : "flux") + " of face " + face_names[f] +
-                        " is not given");
+        throw CaseError(face_key(f) + (is_value ? ".value" : ".flux") + " is not given");
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace kropla {
@@ -19,7 +20,9 @@ namespace kropla {
 // M_ij = integral(rho c phi_i phi_j). A step by backward Euler:
 //     M1 T1 - M0 T0 + L (T1 - T0 - moved.grad T1) = dt (C - K) T1 + dt load,
 //     C_ij = mean over the step of integral(rho c phi_j (u - w).grad phi_i).
-// First order in time, second in space. K, the load and values at the boundary are taken at the step's end.
+// First order in time, second in space. K and values at the boundary are taken at the step's end. Sources and
+// fluxes act over the step: the load is of their means, each at the moving place of a vertex (step_mean.h), and
+// nothing of them is lost between two ends.
 //
 // L, the lumped less the consistent mass (at the end), damps the wiggles that a consistent mass makes beside
 // a jump; where the mesh rests, the two masses together are the lumped one, the integral of rho c phi_i per
@@ -65,6 +68,7 @@ struct HeatRegion {
     Carried carried = Carried::at_rest;
     double initial = 0;    // [K]
     Quantity source = {};  // [W/m^3]; empty: none
+    std::string name = {};  // for messages; empty: by its number
 };
 
 struct HeatFace {
@@ -76,6 +80,10 @@ struct HeatOptions {
     std::vector<HeatRegion> regions;     // region 0 (the surroundings), 1, ...
     std::array<HeatFace, 6> faces = {};  // x min, x max, y min, y max, z min, z max
 };
+
+/// What messages call a region, "heat.region.droplet", and a face of the box, "heat.face.z_min".
+[[nodiscard]] std::string region_key(const HeatOptions& options, std::size_t region);
+[[nodiscard]] std::string face_key(std::size_t face);
 
 /// Throws CaseError, naming the key below `heat`, if a material is not positive, an initial value not finite,
 /// a face without its quantity, or a region of the mesh without its material.
@@ -93,11 +101,25 @@ struct SurfaceFlux {
     std::vector<double> density;   // [W/m^2] at each of them
 };
 
+/// A temperature and where it is.
+struct Extreme {
+    double value = 0;  // [K]
+    Vec3 place = {};   // [m]
+};
+
+/// The coldest and hottest vertices after a step, and the bounds that conduction and convection keep: the extremes
+/// before it and of values at faces; none (infinite) on the side to which sources or fluxes act.
+struct HeatExtremes {
+    Extreme least, most;
+    double lower = 0, upper = 0;  // [K]
+};
+
 struct HeatReport {
     int iterations = 0;            // for the temperature
-    double residual = 0;           // [-] |b - A T| / |b|
+    double backward_error = 0;     // [-] of the solution, by vertices (solver.h)
     int potential_iterations = 0;  // for the flow that makes way for the bodies
     std::vector<SurfaceFlux> surfaces;  // of bodies 1, 2, ...
+    HeatExtremes extremes = {};
 };
 
 /// Takes the temperature from t [s] on `before` to t + dt on `current`: the same connectivity. At a vertex of

@@ -60,7 +60,8 @@ CellSystem<n> conduction(const Cell<n>& cell) {
                 old_product += means.product[i][j] * cell.old[j];
             }
             const double lumped = point.volume * means.value[i];
-            system.matrix[i][i] += cell.capacity * lumped;
+            system.row_sum[i] += cell.capacity * lumped;
+            system.held[i] += cell.capacity * lumped;
             system.right[i] += cell.capacity * (lumped * cell.old[i] - gained * old_product) +
                                cell.dt * lumped * cell.source[i];
         }
@@ -105,12 +106,14 @@ void add_upwinding(const Cell<n>& cell, const std::array<Vec3, n>& mean_gradient
                 system.matrix[i][j] += tau * cell.capacity * along[i] *
                                        (shape_means<n>[k].value[j] + cell.dt * along[j] / point.volume);
             }
+            system.row_sum[i] += tau * cell.capacity * along[i];  // the components sum to zero
             system.right[i] += tau * along[i] * known;
         }
     }
 }
 
-/// What the material and the mesh carry past each other: - dt C, L on what moved, and the upwinding.
+/// What the material and the mesh carry past each other: - dt C, L on what moved (which makes nothing of a
+/// constant), and the upwinding.
 template <std::size_t n>
 void add_convection(const Cell<n>& cell, CellSystem<n>& system) {
     const auto mean_volume_gradient = mean_volume_gradients(cell.x0, cell.x1);
@@ -123,7 +126,12 @@ void add_convection(const Cell<n>& cell, CellSystem<n>& system) {
         const CellPoint<n>& point = cell.now[k];
         const ShapeMeans<n>& means = shape_means<n>[k];
         const Vec3 flown = cell.dt * gradient(point, cell.potential);
-        past += point.volume * (flown - mean_value(k, moved));
+        const Vec3 mean_moved = mean_value(k, moved);
+        past += point.volume * (flown - mean_moved);
+        for (std::size_t i = 0; i < n; ++i) {
+            const double by_flow = dot(flown, point.volume_gradient[i]);
+            system.row_sum[i] -= cell.capacity * (by_flow - dot(mean_moved, mean_volume_gradient[k][i]));
+        }
         for (std::size_t j = 0; j < n; ++j) {
             Vec3 product;  // the mean of phi_j dt w
             for (std::size_t i = 0; i < n; ++i) product += means.product[j][i] * moved[i];

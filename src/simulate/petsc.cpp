@@ -2,14 +2,18 @@
 
 #include "base/error.h"
 
+#include <cstdlib>
+
 namespace kropla {
 
 void check(PetscErrorCode code) {
     if (code == 0) return;
-    const char* text = nullptr;
-    PetscErrorMessage(code, &text, nullptr);
-    throw SolverError("PETSc: " + std::string(text ? text : "unknown error") + " (code " +
-                      std::to_string(static_cast<int>(code)) + ")");
+    const char* kind = nullptr;
+    char* said = nullptr;
+    PetscErrorMessage(code, &kind, &said);
+    std::string text = said != nullptr && *said != 0 ? said : kind != nullptr ? kind : "unknown error";
+    text = text.substr(0, text.find('\n'));
+    throw SolverError("PETSc: " + text);
 }
 
 PetscSession::PetscSession(std::vector<std::string> options) : words_(std::move(options)) {
@@ -18,6 +22,8 @@ PetscSession::PetscSession(std::vector<std::string> options) : words_(std::move(
     arguments_.push_back(nullptr);
     int count = static_cast<int>(words_.size());
     char** first = arguments_.data();
+    // Started without mpirun, this process is alone and needs no daemon, for which Open MPI would look for ssh.
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     check(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"));
     check(PetscInitialize(&count, &first, nullptr, nullptr));
     check(PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr));

@@ -35,29 +35,25 @@ BodySurface surface_of(const Mesh& mesh, Region body) {
 /// What the cells around a body gain at each vertex of its surface and did not get from other vertices [J].
 Array<Vertex, double> gained_around(const HeatStep& step, const Cells& cells, Region body,
                                     const BodySurface& surface, const Array<Vertex, double>& after) {
-    Array<Vertex, double> gained(after.size(), 0.0);
+    Array<Vertex, double> sum(after.size(), 0.0);
     const auto at_surface = [&](Vertex v) { return surface.area[v] > 0; };
     for_each_cell(cells, [&](const auto& cell) {
         const auto vertices = cell_vertices(step.current, cell);
         if (cell_region(step.current, cell) == body || std::ranges::none_of(vertices, at_surface)) return;
-        const auto system = cell_system(step, cell);
-        for (std::size_t i = 0; i < vertices.size(); ++i) {
-            gained[vertices[i]] -= system.right[i];
-            for (std::size_t j = 0; j < vertices.size(); ++j)
-                gained[vertices[i]] += system.matrix[i][j] * after[vertices[j]];
-        }
+        const auto by_cell = gained(cell_system(step, cell), at_corners(after, vertices));
+        for (std::size_t i = 0; i < vertices.size(); ++i) sum[vertices[i]] += by_cell[i];
     });
-    return gained;
+    return sum;
 }
 
 SurfaceFlux surface_flux(const HeatStep& step, const Cells& cells, Region body,
                          const Array<Vertex, double>& after) {
     BodySurface surface = surface_of(step.current, body);
-    const auto gained = gained_around(step, cells, body, surface, after);
+    const auto around = gained_around(step, cells, body, surface, after);
     SurfaceFlux flux{.body = body, .total = 0, .vertices = {}, .density = {}};
     for (Vertex v : surface.vertices) {
-        flux.total += gained[v] / step.dt;
-        flux.density.push_back(gained[v] / (step.dt * surface.area[v]));
+        flux.total += around[v] / step.dt;
+        flux.density.push_back(around[v] / (step.dt * surface.area[v]));
     }
     flux.vertices = std::move(surface.vertices);
     return flux;

@@ -1,0 +1,380 @@
+// Iterative refinement: a Krylov method finds corrections to what is left of the residual.
+//   [Skeel 1980] Iterative refinement implies numerical stability for Gaussian elimination. Math. Comp. 35:
+//     the row-wise backward error; here residuals are not in a higher precision but in the difference form.
+//   [Oettli, Prager 1964] Compatibility of approximate solution of linear equations with given error bounds.
+//     Numer. Math. 6: that error is the smallest relative change of the data that makes x exact.
+#include "simulate/solver.h"
+
+#include "base/error.h"
+#include "simulate/stop.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+namespace kropla {
+namespace {
+
+constexpr double rounding = std::numeric_limits<double>::epsilon() / 2;
+constexpr int most_iterations = 2000;      // of all passes: far more than any system needs
+constexpr int restart = 60;                // of GMRES: as many iterations as a solve may take
+constexpr double pass_margin = 0.1;        // [-] what a pass aims at, in tolerances
+constexpr double deepest_pass = 1e-13;     // [-] of the residual, beyond what a Krylov method sees is its own rounding
+constexpr double stagnation = 0.5;         // [-] of the backward error: a pass that leaves more has got nowhere
+constexpr double singular_shift = 1e-8;    // [-] of the diagonal, to precondition: below any eigenvalue of a mesh's
+                                           //   potential but that of constants, above rounding
+constexpr double several_cells = 10;       // [-] exchanged to held, beyond which multigrid is cheaper
+
+double largest(const Ranks& ranks, double mine) {
+    double all = 0;
+    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, ranks.communicator);
+    return all;
+}
+
+double total(const Ranks& ranks, const std::vector<double>& mine) {
+    const double sum = std::accumulate(mine.begin(), mine.end(), 0.0);
+    double all = 0;
+    MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, ranks.communicator);
+    return all;
+}
+
+OwnedVec make_vector(const Ranks& ranks, std::size_t size) {
+    Vec vector = nullptr;
+    check(VecCreateMPI(ranks.communicator, static_cast<PetscInt>(size), PETSC_DETERMINE, &vector));
+    return OwnedVec(vector);
+}
+
+void put(const std::vector<double>& values, Vec vector) {
+    double* place = nullptr;
+    check(VecGetArrayWrite(vector, &place));
+    std::copy(values.begin(), values.end(), place);
+    check(VecRestoreArrayWrite(vector, &place));
+}
+
+/// The entries of all ranks, on every rank.
+class Gathering {
+public:
+    explicit Gathering(Vec vector) {
+        VecScatter scatter = nullptr;
+        Vec everywhere = nullptr;
+        check(VecScatterCreateToAll(vector, &scatter, &everywhere));
+        scatter_.reset(scatter);
+        everywhere_.reset(everywhere);
+    }
+    std::vector<double> operator()(Vec vector) const {
+        check(VecScatterBegin(scatter_.get(), vector, everywhere_.get(), INSERT_VALUES, SCATTER_FORWARD));
+        check(VecScatterEnd(scatter_.get(), vector, everywhere_.get(), INSERT_VALUES, SCATTER_FORWARD));
+        PetscInt size = 0;
+        check(VecGetSize(everywhere_.get(), &size));
+        const double* values = nullptr;
+        check(VecGetArrayRead(everywhere_.get(), &values));
+        std::vector<double> copy(values, values + size);
+        check(VecRestoreArrayRead(everywhere_.get(), &values));
+        return copy;
+    }
+
+private:
+    OwnedScatter scatter_;
+    OwnedVec everywhere_;
+};
+
+/// By what each row is divided: its size; or the largest of all, where columns count too: a symmetric matrix stays
+/// so, and multigrid needs columns of conduction that sum to zero, as its restriction adds up rows.
+std::vector<double> row_scales(const Ranks& ranks, const LinearSystem& system, bool alike) {
+    std::vector<double> scale(system.right.size());
+    for (std::size_t r = 0; r < scale.size(); ++r) scale[r] = row_size(system, r);
+    double most = 0;
+    for (double s : scale) most = std::max(most, s);
+    most = largest(ranks, most);
+    for (double& s : scale)
+        if (alike || !(s > 0)) s = most > 0 ? most : 1;
+    return scale;
+}
+
+OwnedMat make_matrix(const Ranks& ranks, const LinearSystem& system, const std::vector<double>& scale,
+                     PetscInt all_rows) {
+    std::vector<double> scaled(system.value.size());
+    for (std::size_t r = 0; r < scale.size(); ++r) {
+        double diagonal = system.row_sum[r];
+        std::size_t own = 0;
+        for (PetscInt k = system.begin[r]; k < system.begin[r + 1]; ++k) {
+            const auto place = static_cast<std::size_t>(k);
+            if (system.column[place] == system.first_row + static_cast<PetscInt>(r)) {
+                own = place;
+            } else {
+                diagonal -= system.value[place];
+                scaled[place] = system.value[place] / scale[r];
+            }
+        }
+        scaled[own] = diagonal / scale[r];
+    }
+    Mat matrix = nullptr;
+    check(MatCreate(ranks.communicator, &matrix));
+    OwnedMat owned(matrix);
+    check(MatSetSizes(matrix, system.rows(), system.rows(), all_rows, all_rows));
+    check(MatSetType(matrix, MATAIJ));
+    const PetscInt *begin = system.begin.data(), *column = system.column.data();
+    check(MatSeqAIJSetPreallocationCSR(matrix, begin, column, scaled.data()));
+    check(MatMPIAIJSetPreallocationCSR(matrix, begin, column, scaled.data()));
+    return owned;
+}
+
+/// The unknown as a sum of two: differences of neighbours are finer than the unknown's own rounding.
+struct Unknown {
+    std::vector<double> high, low;  // per global row
+
+    void add(std::size_t r, double value) {
+        const double sum = high[r] + value, part = sum - high[r];
+        low[r] += (high[r] - (sum - part)) + (value - part);  // what rounding took [Knuth, TAOCP 2, 4.2.2]
+        high[r] = sum;
+    }
+    [[nodiscard]] double value(std::size_t r) const { return high[r] + low[r]; }
+    [[nodiscard]] double difference(std::size_t j, std::size_t i) const {
+        return (high[j] - high[i]) + (low[j] - low[i]);
+    }
+};
+
+struct Residual {
+    std::vector<double> rest;  // b - A x per owned row
+    double backward_error;     // [-] over all ranks
+};
+
+Residual residual(const Ranks& ranks, const LinearSystem& system, const Unknown& x) {
+    double most = 0, error = 0;
+    for (double value : x.high) most = std::max(most, std::abs(value));
+    std::vector<double> rest(system.right.size());
+    for (std::size_t r = 0; r < rest.size(); ++r) {
+        const std::size_t own = static_cast<std::size_t>(system.first_row) + r;
+        double sum = system.right[r] - system.row_sum[r] * x.high[own] - system.row_sum[r] * x.low[own];
+        double size = std::abs(system.right[r]) + std::abs(system.row_sum[r]) * most + system.negligible[r];
+        for (PetscInt k = system.begin[r]; k < system.begin[r + 1]; ++k) {
+            const auto place = static_cast<std::size_t>(k);
+            const double exchanged =
+                system.value[place] * x.difference(static_cast<std::size_t>(system.column[place]), own);
+            sum -= exchanged;
+            size += std::abs(exchanged);
+        }
+        rest[r] = sum;
+        if (sum != 0) error = std::max(error, std::isfinite(sum) ? std::abs(sum) / size : INFINITY);
+    }
+    return {std::move(rest), largest(ranks, error)};
+}
+
+/// What a row's sum is known to, at best.
+double reachable(const Ranks& ranks, const LinearSystem& system) {
+    PetscInt longest = 0;
+    for (std::size_t r = 0; r + 1 < system.begin.size(); ++r)
+        longest = std::max(longest, system.begin[r + 1] - system.begin[r]);
+    return rounding * (largest(ranks, static_cast<double>(longest)) + 2);
+}
+
+/// PETSc's solver for one system, and whether its tolerance is the user's.
+class Krylov {
+public:
+    Krylov(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice)
+        : scale_(row_scales(ranks, system,
+                            choice.potential || choice.preconditioner == Preconditioner::multigrid)),
+          right_(make_vector(ranks, scale_.size())),
+          unknown_(make_vector(ranks, scale_.size())),
+          gathering_(unknown_.get()) {
+        PetscInt all_rows = 0;
+        check(VecGetSize(right_.get(), &all_rows));
+        matrix_ = make_matrix(ranks, system, scale_, all_rows);
+        KSP solver = nullptr;
+        check(KSPCreate(ranks.communicator, &solver));
+        solver_.reset(solver);
+        check(KSPSetOptionsPrefix(solver, choice.prefix.c_str()));
+        if (choice.potential) set_potential(ranks);
+        else check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));
+        set_defaults(choice);
+        check(KSPSetFromOptions(solver));
+        listen_on_the_way(solver, ranks);
+        double rtol = 0, atol = 0;
+        check(KSPGetTolerances(solver, &rtol, &atol, nullptr, &iterations_left_));
+        users_tolerance_ = rtol != deepest_pass || atol != 0;
+    }
+
+    [[nodiscard]] bool users_tolerance() const { return users_tolerance_; }
+    [[nodiscard]] int iterations() const { return iterations_; }
+
+    /// The correction for this residual, per global row.
+    std::vector<double> correct(const std::vector<double>& rest, double rtol) {
+        std::vector<double> scaled(rest.size());
+        for (std::size_t r = 0; r < rest.size(); ++r) scaled[r] = rest[r] / scale_[r];
+        put(scaled, right_.get());
+        if (!users_tolerance_)
+            check(KSPSetTolerances(solver_.get(), rtol, 0.0, PETSC_DEFAULT, iterations_left_));
+        check(KSPSolve(solver_.get(), right_.get(), unknown_.get()));
+        PetscInt taken = 0;
+        check(KSPGetIterationNumber(solver_.get(), &taken));
+        iterations_ += static_cast<int>(taken);
+        iterations_left_ = std::max<PetscInt>(iterations_left_ - taken, 0);
+        return gathering_(unknown_.get());
+    }
+
+    /// Makes all that is made before the first iteration.
+    void set_up() {
+        check(KSPSetUp(solver_.get()));
+        check(KSPSetUpOnBlocks(solver_.get()));
+    }
+
+    [[nodiscard]] KSPConvergedReason reason() const {
+        KSPConvergedReason reason{};
+        check(KSPGetConvergedReason(solver_.get(), &reason));
+        return reason;
+    }
+    [[nodiscard]] bool out_of_iterations() const { return iterations_left_ == 0; }
+
+private:
+    /// Constants are taken out of every residual; the preconditioner is that of a matrix that is not singular.
+    void set_potential(const Ranks& ranks) {
+        MatNullSpace space = nullptr;
+        check(MatNullSpaceCreate(ranks.communicator, PETSC_TRUE, 0, nullptr, &space));
+        constants_.reset(space);
+        check(MatSetNullSpace(matrix_.get(), space));
+        Mat shifted = nullptr;
+        check(MatDuplicate(matrix_.get(), MAT_COPY_VALUES, &shifted));
+        regular_.reset(shifted);
+        const OwnedVec diagonal = make_vector(ranks, scale_.size());
+        check(MatGetDiagonal(shifted, diagonal.get()));
+        check(VecScale(diagonal.get(), 1 + singular_shift));
+        check(MatDiagonalSet(shifted, diagonal.get(), INSERT_VALUES));
+        check(KSPSetOperators(solver_.get(), matrix_.get(), shifted));
+        check(KSPSetNormType(solver_.get(), KSP_NORM_UNPRECONDITIONED));
+    }
+
+    void set_defaults(const SolverChoice& choice) {
+        KSP solver = solver_.get();
+        check(KSPSetType(solver, choice.potential ? KSPCG : KSPGMRES));
+        if (!choice.potential) check(KSPGMRESSetRestart(solver, restart));
+        PC preconditioner = nullptr;
+        check(KSPGetPC(solver, &preconditioner));
+        if (choice.preconditioner == Preconditioner::multigrid) {
+            set_multigrid(choice);
+            check(PCSetType(preconditioner, PCHYPRE));
+            check(PCHYPRESetType(preconditioner, "boomeramg"));
+        } else {
+            check(PCSetType(preconditioner, PCBJACOBI));
+        }
+        check(KSPSetTolerances(solver, deepest_pass, 0.0, PETSC_DEFAULT, most_iterations));
+        check(KSPSetInitialGuessNonzero(solver, PETSC_FALSE));
+    }
+
+    /// BoomerAMG has no other way in than options; those that the user gave stand.
+    static void set_multigrid(const SolverChoice& choice) {
+        constexpr std::array<std::array<const char*, 2>, 7> defaults = {
+            {{"coarsen_type", "HMIS"},
+             {"interp_type", "ext+i"},
+             {"P_max", "4"},
+             {"strong_threshold", "0.5"},
+             {"agg_nl", "1"},
+             {"relax_type_down", "SOR/Jacobi"},  // one sweep each way, symmetric together
+             {"relax_type_up", "backward-SOR/Jacobi"}}};
+        for (const auto& [name, value] : defaults) {
+            const std::string option = "-" + choice.prefix + "pc_hypre_boomeramg_" + name;
+            PetscBool given = PETSC_FALSE;
+            check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
+            if (!given) check(PetscOptionsSetValue(nullptr, option.c_str(), value));
+        }
+    }
+
+    std::vector<double> scale_;
+    OwnedVec right_, unknown_;
+    Gathering gathering_;
+    OwnedMat matrix_, regular_;
+    OwnedNullSpace constants_;
+    OwnedKsp solver_;
+    PetscInt iterations_left_ = most_iterations;
+    int iterations_ = 0;
+    bool users_tolerance_ = false;
+};
+
+[[noreturn]] void give_up(const SolverChoice& choice, const Krylov& krylov, double backward_error) {
+    std::ostringstream message;
+    message << "the " << choice.name << " solver did not converge: " << KSPConvergedReasons[krylov.reason()]
+            << " after " << krylov.iterations() << " iterations, backward error " << backward_error;
+    throw SolverError(message.str());
+}
+
+/// Where no unknown is fixed, the sum of all equations says what constant is missing in x.
+void balance(const Ranks& ranks, const LinearSystem& system, Unknown& x, Residual& left) {
+    const double held = total(ranks, system.row_sum);
+    if (!system.closed || !(held > 0)) return;
+    const double missing = total(ranks, left.rest) / held;
+    if (!std::isfinite(missing)) return;
+    for (std::size_t r = 0; r < x.high.size(); ++r) x.add(r, missing);
+    left = residual(ranks, system, x);
+}
+
+std::vector<double> everywhere(const Ranks& ranks, const std::vector<double>& mine) {
+    const OwnedVec vector = make_vector(ranks, mine.size());
+    put(mine, vector.get());
+    return Gathering(vector.get())(vector.get());
+}
+
+/// Enough of them for two levels of any multigrid.
+LinearSystem chains_of_unknowns() {
+    constexpr PetscInt rows = 512;
+    LinearSystem system;
+    for (PetscInt r = 0; r < rows; ++r) {
+        system.begin.push_back(static_cast<PetscInt>(system.column.size()));
+        for (PetscInt c = std::max<PetscInt>(r - 1, 0); c <= std::min<PetscInt>(r + 1, rows - 1); ++c) {
+            system.column.push_back(c);
+            system.value.push_back(c == r ? 0 : -1);
+        }
+    }
+    system.begin.push_back(static_cast<PetscInt>(system.column.size()));
+    system.row_sum.assign(rows, 0.1);
+    system.right = system.guess = system.negligible = system.held = std::vector<double>(rows, 0.0);
+    return system;
+}
+
+}  // namespace
+
+Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice) {
+    heed(ranks);
+    Unknown x{everywhere(ranks, system.guess), {}};
+    x.low.assign(x.high.size(), 0.0);
+    const double wanted = std::max(choice.tolerance, reachable(ranks, system));
+    Residual left = residual(ranks, system, x);
+    Krylov krylov(ranks, system, choice);
+    while (left.backward_error > wanted) {
+        const double before = left.backward_error;
+        const double aim = std::clamp(pass_margin * wanted / before, deepest_pass, pass_margin);
+        const std::vector<double> correction = krylov.correct(left.rest, aim);
+        heed(ranks);
+        for (std::size_t r = 0; r < correction.size(); ++r) x.add(r, correction[r]);
+        left = residual(ranks, system, x);
+        if (!choice.potential) balance(ranks, system, x, left);
+        if (krylov.users_tolerance()) {
+            if (krylov.reason() <= 0) give_up(choice, krylov, left.backward_error);
+            break;
+        }
+        const bool stuck = !(left.backward_error < stagnation * before);
+        if (left.backward_error > wanted && (stuck || krylov.out_of_iterations()))
+            give_up(choice, krylov, left.backward_error);
+    }
+    std::vector<double> value(x.high.size());
+    for (std::size_t r = 0; r < value.size(); ++r) value[r] = x.value(r);
+    return {std::move(value), krylov.iterations(), left.backward_error};
+}
+
+void rehearse(const Ranks& ranks) {
+    const LinearSystem system = chains_of_unknowns();
+    for (Preconditioner preconditioner : {Preconditioner::factors, Preconditioner::multigrid})
+        Krylov(ranks, system, {.name = "", .preconditioner = preconditioner}).set_up();
+    Krylov(ranks, system, {.name = "", .prefix = "potential_", .preconditioner = Preconditioner::multigrid,
+                           .potential = true}).set_up();
+}
+
+Preconditioner preconditioner_for(const Ranks& ranks, const LinearSystem& system) {
+    double most = 0;
+    for (std::size_t r = 0; r < system.right.size(); ++r)
+        most = std::max(most, row_size(system, r) / system.held[r]);
+    return largest(ranks, most) > several_cells ? Preconditioner::multigrid : Preconditioner::factors;
+}
+
+}  // namespace kropla

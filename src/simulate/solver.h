@@ -1,0 +1,51 @@
+#pragma once
+
+#include "simulate/linear_system.h"
+
+#include <string>
+#include <vector>
+
+namespace kropla {
+
+enum class Preconditioner {
+    factors,    ///< incomplete, without fill, by rank: for unknowns that are bound to a few others at most
+    multigrid,  ///< algebraic: as many iterations whatever the number of unknowns
+};
+
+/// How a system is solved unless PETSc's options say otherwise.
+struct SolverChoice {
+    std::string name;         // for messages: "heat"
+    std::string prefix = "";  // of its PETSc options: "potential_" for -potential_ksp_type
+    Preconditioner preconditioner = Preconditioner::factors;
+    double tolerance = 1e-13;  // [-] of the backward error; rounding has the last word
+    bool potential = false;    // symmetric, its row sums are zero: constants are of no matter
+};
+
+struct Solution {
+    std::vector<double> value;  // per global row, the same on every rank
+    int iterations;
+    double backward_error;  // [-] see solve
+};
+
+/// Solves together with all other ranks: conjugate gradients for a potential, else GMRES. Neither units nor
+/// contrasts matter: rows are scaled by their size, and the solver is asked for corrections, whose right-hand
+/// sides are residuals computed in the form of LinearSystem, until the backward error
+///     max over i of |b - A x|_i / (|row_sum_i| max|x| + |b_i| + sum over j of |a_ij (x_j - x_i)| + negligible_i)
+/// is within the tolerance, or what rounding leaves of a row's sum if that is more: x then solves a system whose
+/// sums, right-hand side and couplings differ by that share. For an M-matrix so small a change makes x differ
+/// by about as small a share of its largest entry.
+///
+/// A tolerance in PETSc's options (-ksp_rtol, -ksp_atol, of the residual of the first guess) holds instead.
+/// Throws SolverError with PETSc's reason, the iterations and the backward error if it does not converge,
+/// AllInterrupted if the watch of any rank says stop.
+[[nodiscard]] Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice);
+
+/// Sets up every solver that a step may choose, for a small system, so that each option of PETSc's that means
+/// anything has been asked for. Throws SolverError if PETSc refuses one.
+void rehearse(const Ranks& this_rank);
+
+/// The preconditioner for a step of diffusion: multigrid once what a vertex exchanges with its neighbours during
+/// the step is so many times what it holds, anywhere, that heat passes several cells.
+[[nodiscard]] Preconditioner preconditioner_for(const Ranks& ranks, const LinearSystem& system);
+
+}  // namespace kropla

@@ -1,0 +1,122 @@
+// What a run does of heat: sources between step ends, options of the solver, and what it says of both.
+#include "run_results.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace kropla {
+namespace {
+
+/// A unit cube at 300 K with this source, ten steps of 0.1 s.
+std::string cube_with(const std::string& source, const std::string& more = "") {
+    return "[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[size]\nsurface = 0.5\nfar = 0.5\n"
+           "[time]\nend = 1.0\nsteps = 10\n"
+           "[heat.region.surroundings]\nconductivity = 1.0\ndensity = 1.0\nspecific_heat = 1.0\ninitial = 300.0\n"
+           "source = " + source + "\n" + more;
+}
+
+/// Steel in argon, so coarse that temperatures fall below any that there was.
+std::string coarse_case() {
+    std::string text = short_case(2);
+    const auto conductivity = [&](const std::string& of, const std::string& value) {
+        const std::size_t at = text.find("conductivity", text.find(of));
+        text.replace(at, text.find('\n', at) - at, "conductivity = " + value);
+    };
+    conductivity("[heat.region.surroundings]", "1e-4");
+    conductivity("[heat.region.droplet]", "1e4");
+    return text;
+}
+
+TEST(RunHeat, WhatASourceGivesBetweenTwoStepEndsArrives) {
+    const TemporaryFolder folder;
+    const std::pair<const char*, double> pulses[] = {
+        {"\"t > 0.31 ? (t < 0.39 ? 1e3 : 0) : 0\"", 80}, {"\"t > 0.3141 ? (t < 0.3142 ? 1e6 : 0) : 0\"", 100}};
+    for (const auto& [source, joules] : pulses) {
+        SCOPED_TRACE(source);
+        write(folder.path / "a.toml", cube_with(source));
+        std::filesystem::remove_all(folder.path / "d");
+        const Outcome it = kropla_program(folder, "run a.toml --out d");
+        ASSERT_EQ(it.code, 0) << it.err;
+        const auto energy = numbers(read_table(folder.path / "d/steps.csv"), "energy_integral");
+        EXPECT_NEAR(energy.at(2), 300, 1e-9);
+        EXPECT_NEAR(energy.at(3), 300 + joules, 1e-9 * joules);
+        EXPECT_NEAR(energy.back(), 300 + joules, 1e-9 * joules);
+    }
+}
+
+TEST(RunHeat, AQuantityWithoutAValueIsNamed) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", cube_with("\"sqrt(0.55 - t)\""));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(it.code, 2);
+    expect_one_line(it.err, "a.toml: heat.region.surroundings.source is ");
+    EXPECT_NE(it.err.find(" m, t = 0.5"), std::string::npos) << it.err;
+    EXPECT_EQ(read_table(folder.path / "d/steps.csv").rows, 5u);
+    write(folder.path / "b.toml", cube_with("0", "[heat.face]\nz_min = { flux = \"1/(t < 0.15)\" }\n"));
+    expect_one_line(kropla_program(folder, "run b.toml --out e").err, "b.toml: heat.face.z_min.flux is inf at (");
+}
+
+TEST(RunHeat, TemperaturesBeyondTheirBoundsAreToldOnce) {
+    const TemporaryFolder folder;
+    write(folder.path / "coarse.toml", coarse_case());
+    const Outcome it = kropla_program(folder, "run coarse.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const std::string told = "warning: the temperature is ";
+    EXPECT_NE(it.out.find(told), std::string::npos) << it.out;
+    EXPECT_EQ(it.out.find(told), it.out.rfind(told)) << it.out;
+    EXPECT_NE(it.out.find(" K below 300 K, which the equation allows, at ("), std::string::npos) << it.out;
+}
+
+TEST(RunHeat, OptionsOfTheSolverThatAreWrongEndWithTwo) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", cube_with("0"));
+    const std::pair<const char*, const char*> wrong[] = {
+        {"-ksp_rtoll 1e-9", "-ksp_rtoll is no option of the solver's"},
+        {"-ksp_rtoll 1e-9", "did you mean \"-ksp_rtol\"?"},
+        {"-potential_kps_type cg", "did you mean \"-potential_ksp_type\"?"},
+        {"-resume", "did you mean \"--resume\"?"},
+        {"-ksp_rtol abc", "-ksp_rtol abc: this value is not taken"},
+        {"-ksp_type foo", "-ksp_type foo: this value is not taken"},
+        {"-pc_type foo", "-pc_type foo: this value is not taken"}};
+    for (const auto& [options, said] : wrong) {
+        SCOPED_TRACE(options);
+        const Outcome it = kropla_program(folder, std::string("run a.toml --out d ") + options);
+        EXPECT_EQ(it.code, 2);
+        expect_one_line(it.err, said);
+        EXPECT_EQ(it.err.find("code 6"), std::string::npos) << it.err;
+        EXPECT_FALSE(std::filesystem::exists(folder.path / "d"));
+    }
+}
+
+TEST(RunHeat, OptionsOfAllKindsReachTheSolver) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", short_case(1));
+    for (const char* options : {"-ksp_type bcgs -ksp_rtol 1e-10 -sub_pc_factor_levels 1", "-pc_type gamg -mg_levels_ksp_max_it 3",
+                                "-potential_pc_type icc -potential_ksp_rtol 1e-12", "-pc_type hypre -pc_hypre_boomeramg_relax_type_all Jacobi",
+                                "-potential_pc_hypre_boomeramg_strong_threshold 0.25"}) {
+        SCOPED_TRACE(options);
+        std::filesystem::remove_all(folder.path / "d");
+        const Outcome it = kropla_program(folder, std::string("run a.toml --out d ") + options);
+        EXPECT_EQ(it.code, 0) << it.err;
+        EXPECT_EQ(it.out.find("never used"), std::string::npos) << it.out;
+    }
+    std::filesystem::remove_all(folder.path / "d");
+    write(folder.path / "b.toml", cube_with("0"));
+    const Outcome it = kropla_program(folder, "run b.toml --out d -potential_ksp_rtol 1e-9");
+    EXPECT_EQ(it.code, 0) << it.err;
+    EXPECT_NE(it.out.find("-potential_ksp_rtol was never used"), std::string::npos) << it.out;
+}
+
+TEST(RunHeat, NeedsNoRemoteShell) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", cube_with("0"));
+    const std::string command = "cd '" + folder.path.string() +
+                                "' && /usr/bin/env PATH=/nowhere '" KROPLA_PROGRAM
+                                "' run a.toml --out d >out.txt 2>err.txt </dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0) << contents(folder.path / "err.txt");
+}
+
+}  // namespace
+}  // namespace kropla
