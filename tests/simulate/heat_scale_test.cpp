@@ -2,6 +2,8 @@
 #include "meshes.h"
 #include "session.h"
 
+#include "mesh/prisms.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
