@@ -116,7 +116,7 @@ struct HeatExtremes {
 
 struct HeatReport {
     int iterations = 0;            // for the temperature
-    double backward_error = 0;     // [-] of the solution, by vertices (solver.h)
+    double error = 0;              // [-] of the solution, as solver.h has it: the backward error by vertices
     int potential_iterations = 0;  // for the flow that makes way for the bodies
     std::vector<SurfaceFlux> surfaces;  // of bodies 1, 2, ...
     HeatExtremes extremes = {};

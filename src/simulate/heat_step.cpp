@@ -251,7 +251,7 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
     for (std::size_t r = 0; r < numbering.vertex.size(); ++r) {
         after[numbering.vertex[r]] = solution.value[r];
     }
-    HeatReport report{solution.iterations, solution.backward_error, flow.iterations,
+    HeatReport report{solution.iterations, solution.error, flow.iterations,
                       surface_fluxes(step, cells, after), extremes(step, numbering.vertex, boundary, after)};
     temperature.values = std::move(after);
     return report;

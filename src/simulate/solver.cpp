@@ -23,9 +23,10 @@ constexpr int most_iterations = 2000;      // of all passes: far more than any s
 constexpr int restart = 60;                // of GMRES: as many iterations as a solve may take
 constexpr double pass_margin = 0.1;        // [-] what a pass aims at, in tolerances
 constexpr double deepest_pass = 1e-13;     // [-] of the residual, beyond what a Krylov method sees is its own rounding
-constexpr double stagnation = 0.5;         // [-] of the backward error: a pass that leaves more has got nowhere
-constexpr double singular_shift = 1e-8;    // [-] of the diagonal, to precondition: below any eigenvalue of a mesh's
-                                           //   potential but that of constants, above rounding
+constexpr double stagnation = 0.5;         // [-] of the error and of the residual: what leaves more got nowhere
+constexpr double regular_shift = 1e-12;    // [-] of the diagonal, to precondition: far above rounding, below all that
+                                           //   contrasts of 1e8 make small, but for constants
+constexpr double hardly_held = 1e-9;       // [-] of what is exchanged: constants are nearly lost in rounding
 constexpr double several_cells = 10;       // [-] exchanged to held, beyond which multigrid is cheaper
 
 double largest(const Ranks& ranks, double mine) {
@@ -137,14 +138,21 @@ struct Unknown {
     }
 };
 
+double largest_size(const std::vector<double>& values) {
+    double most = 0;
+    for (double value : values) most = std::max(most, std::abs(value));
+    return most;
+}
+
 struct Residual {
     std::vector<double> rest;  // b - A x per owned row
+    double largest;            // of their sizes, over all ranks
     double backward_error;     // [-] over all ranks
 };
 
 Residual residual(const Ranks& ranks, const LinearSystem& system, const Unknown& x) {
-    double most = 0, error = 0;
-    for (double value : x.high) most = std::max(most, std::abs(value));
+    const double most = largest_size(x.high);
+    double error = 0, most_left = 0;
     std::vector<double> rest(system.right.size());
     for (std::size_t r = 0; r < rest.size(); ++r) {
         const std::size_t own = static_cast<std::size_t>(system.first_row) + r;
@@ -158,9 +166,16 @@ Residual residual(const Ranks& ranks, const LinearSystem& system, const Unknown&
             size += std::abs(exchanged);
         }
         rest[r] = sum;
+        most_left = std::max(most_left, std::abs(sum));
         if (sum != 0) error = std::max(error, std::isfinite(sum) ? std::abs(sum) / size : INFINITY);
     }
-    return {std::move(rest), largest(ranks, error)};
+    return {std::move(rest), largest(ranks, most_left), largest(ranks, error)};
+}
+
+/// A pass got nowhere.
+bool stuck(const Residual& before, const Residual& after) {
+    return !(after.backward_error < stagnation * before.backward_error) &&
+           !(after.largest < stagnation * before.largest);
 }
 
 /// What a row's sum is known to, at best.
@@ -169,6 +184,13 @@ double reachable(const Ranks& ranks, const LinearSystem& system) {
     for (std::size_t r = 0; r + 1 < system.begin.size(); ++r)
         longest = std::max(longest, system.begin[r + 1] - system.begin[r]);
     return rounding * (largest(ranks, static_cast<double>(longest)) + 2);
+}
+
+/// Nothing is fixed, and so much exchanged that the matrix hardly knows what is held: balance() finds constants.
+bool loses_constants(const Ranks& ranks, const LinearSystem& system) {
+    std::vector<double> size(system.right.size());
+    for (std::size_t r = 0; r < size.size(); ++r) size[r] = row_size(system, r);
+    return total(ranks, system.row_sum) < hardly_held * total(ranks, size) && system.closed;
 }
 
 /// PETSc's solver for one system, and whether its tolerance is the user's.
@@ -187,7 +209,8 @@ public:
         check(KSPCreate(ranks.communicator, &solver));
         solver_.reset(solver);
         check(KSPSetOptionsPrefix(solver, choice.prefix.c_str()));
-        if (choice.potential) set_potential(ranks);
+        if (choice.potential) check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
+        if (choice.potential || loses_constants(ranks, system)) leave_constants_out(ranks);
         else check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));
         set_defaults(choice);
         check(KSPSetFromOptions(solver));
@@ -230,7 +253,7 @@ public:
 
 private:
     /// Constants are taken out of every residual; the preconditioner is that of a matrix that is not singular.
-    void set_potential(const Ranks& ranks) {
+    void leave_constants_out(const Ranks& ranks) {
         MatNullSpace space = nullptr;
         check(MatNullSpaceCreate(ranks.communicator, PETSC_TRUE, 0, nullptr, &space));
         constants_.reset(space);
@@ -240,10 +263,9 @@ private:
         regular_.reset(shifted);
         const OwnedVec diagonal = make_vector(ranks, scale_.size());
         check(MatGetDiagonal(shifted, diagonal.get()));
-        check(VecScale(diagonal.get(), 1 + singular_shift));
+        check(VecScale(diagonal.get(), 1 + regular_shift));
         check(MatDiagonalSet(shifted, diagonal.get(), INSERT_VALUES));
         check(KSPSetOperators(solver_.get(), matrix_.get(), shifted));
-        check(KSPSetNormType(solver_.get(), KSP_NORM_UNPRECONDITIONED));
     }
 
     void set_defaults(const SolverChoice& choice) {
@@ -341,25 +363,29 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
     const double wanted = std::max(choice.tolerance, reachable(ranks, system));
     Residual left = residual(ranks, system, x);
     Krylov krylov(ranks, system, choice);
+    double corrected = INFINITY;  // [-] of the largest entry, by the last pass
     while (left.backward_error > wanted) {
-        const double before = left.backward_error;
-        const double aim = std::clamp(pass_margin * wanted / before, deepest_pass, pass_margin);
-        const std::vector<double> correction = krylov.correct(left.rest, aim);
+        const Residual before = left;
+        const double aim = std::clamp(pass_margin * wanted / before.backward_error, deepest_pass, pass_margin);
+        const std::vector<double> correction = krylov.correct(before.rest, aim);
         heed(ranks);
         for (std::size_t r = 0; r < correction.size(); ++r) x.add(r, correction[r]);
         left = residual(ranks, system, x);
-        if (!choice.potential) balance(ranks, system, x, left);
         if (krylov.users_tolerance()) {
             if (krylov.reason() <= 0) give_up(choice, krylov, left.backward_error);
             break;
         }
-        const bool stuck = !(left.backward_error < stagnation * before);
-        if (left.backward_error > wanted && (stuck || krylov.out_of_iterations()))
+        if (!choice.potential) {
+            balance(ranks, system, x, left);
+            corrected = largest_size(correction) / largest_size(x.high);
+            if (corrected < rounding) break;
+        }
+        if (left.backward_error > wanted && (stuck(before, left) || krylov.out_of_iterations()))
             give_up(choice, krylov, left.backward_error);
     }
     std::vector<double> value(x.high.size());
     for (std::size_t r = 0; r < value.size(); ++r) value[r] = x.value(r);
-    return {std::move(value), krylov.iterations(), left.backward_error};
+    return {std::move(value), krylov.iterations(), std::min(left.backward_error, corrected)};
 }
 
 void rehearse(const Ranks& ranks) {

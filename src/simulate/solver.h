@@ -24,7 +24,7 @@ struct SolverChoice {
 struct Solution {
     std::vector<double> value;  // per global row, the same on every rank
     int iterations;
-    double backward_error;  // [-] see solve
+    double error;  // [-] the backward error, or the last correction if that is smaller; see solve
 };
 
 /// Solves together with all other ranks: conjugate gradients for a potential, else GMRES. Neither units nor
@@ -33,7 +33,8 @@ struct Solution {
 ///     max over i of |b - A x|_i / (|row_sum_i| max|x| + |b_i| + sum over j of |a_ij (x_j - x_i)| + negligible_i)
 /// is within the tolerance, or what rounding leaves of a row's sum if that is more: x then solves a system whose
 /// sums, right-hand side and couplings differ by that share. For an M-matrix so small a change makes x differ
-/// by about as small a share of its largest entry.
+/// by about as small a share of its largest entry. It is done, too, when a correction is lost in the rounding of
+/// that entry: rows that hold next to nothing may then still differ, which no unknown can show.
 ///
 /// A tolerance in PETSc's options (-ksp_rtol, -ksp_atol, of the residual of the first guess) holds instead.
 /// Throws SolverError with PETSc's reason, the iterations and the backward error if it does not converge,

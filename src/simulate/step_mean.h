@@ -21,7 +21,7 @@ struct Way {
 
 /// The means over the step from t [s] to t + dt of a quantity at places that move. Whatever it does in between
 /// counts: jumps at times that hold for several places are found to rounding and between them it is integrated
-/// by Gauss and Kronrod's rules, place by place, until the error is within 1e-10 of the largest value or a piece
+/// by Lobatto's rule, place by place, until the error is within 1e-10 of the largest value or a piece
 /// is a millionth of the step. Up to 32 of the places, evenly among them, are looked at beforehand, eight of
 /// them at 2048 times: what lasts shorter than that, or is shorter than a twentieth of the step and passes
 /// places by that were not looked at, may be missed. Deterministic.

@@ -1,6 +1,7 @@
 // Units, contrasts and time steps: nothing of them matters to the solvers.
 #include "meshes.h"
 #include "session.h"
+#include "mesh/prisms.h"
 
 #include "mesh/prisms.h"
 
@@ -94,9 +95,10 @@ NodalField conducted(const HeatMaterial& gas, const HeatMaterial& body, double d
     const HeatOptions options = hot_body(gas, body);
     NodalField field = initial_temperature(mesh, options);
     const double begin = energy(mesh, options, field.values);
-    const HeatReport report = step_heat(petsc().all_ranks(), mesh, mesh, options, field, 0, dt);
+    HeatReport report;
+    EXPECT_NO_THROW(report = step_heat(petsc().all_ranks(), mesh, mesh, options, field, 0, dt));
     EXPECT_LE(report.iterations, most_iterations);
-    EXPECT_LT(report.backward_error, 1e-12);
+    EXPECT_LT(report.error, 1e-13);
     EXPECT_NEAR(energy(mesh, options, field.values) / begin, 1, 1e-12);
     const auto [least, most] = std::ranges::minmax(field.values);
     EXPECT_GT(least, 300 * (1 - 1e-9));
