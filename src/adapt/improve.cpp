@@ -12,10 +12,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 namespace kropla {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_gain = 1e-3;
 constexpr double passable_after_swap = 0.96;    // of good_enough: no swap for the energy makes a worse cell
 constexpr double longest_after_collapse = 2.0;  // [target sizes]
@@ -70,7 +72,8 @@ std::array<double, 6> squared_edges(const Mesh& mesh, Tet t) {
     std::array<double, 6> lengths;
     for (std::size_t k = 0; k < 6; ++k) {
         const auto [i, j] = tet_edges[k];
-        lengths[k] = squared_norm(mesh.position[mesh.tets[t][at(i)]] - mesh.position[mesh.tets[t][at(j)]]);
+        const double square = squared_norm(mesh.position[mesh.tets[t][at(i)]] - mesh.position[mesh.tets[t][at(j)]]);
+        lengths[k] = square >= 0 ? square : infinity;  // of places that are not finite
     }
     return lengths;
 }
@@ -296,6 +299,7 @@ struct Allowed {
 std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_time, const AdaptOptions& options,
                        Allowed& allowed, IndexSet<Tet>& changed, Changes& changes) {
     std::vector<Tet> stuck;
+    const bool tangled = !bad.empty() && bad.front().ratio == infinity;
     while (!bad.empty()) {
         heed(options.watch);
         if (allowed.treatments.spent()) {
@@ -318,9 +322,13 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
                 again.push_back(asked[which].cell);
                 continue;
             }
+            rename_inserted(remedy.cavity, next, mesh);
+            if (tangled && remedy.kind != Kind::move && !fits(mesh, remedy.cavity)) {
+                stuck.push_back(asked[which].cell);
+                continue;
+            }
             replaced.add(remedy.cavity);
             if (remedy.kind == Kind::split) allowed.splits.take(1);
-            rename_inserted(remedy.cavity, next, mesh);
             for (Tet t : apply(mesh, remedy, changes)) {
                 changed.insert(t);
                 again.push_back(t);
@@ -349,20 +357,25 @@ void retriangulate(Mesh& mesh, const BadCell& bad, const Snapshot& at_time, cons
     }
 }
 
-/// The same for all cells that nothing else has helped.
-void retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at_time, const AdaptOptions& options,
+/// The same for all cells that nothing else has helped. Returns whether the budget is spent.
+bool retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at_time, const AdaptOptions& options,
                    std::size_t cells, Changes& changes) {
     const double allowed = cells_to_cut_out(cells, options);
     Budget budget(allowed);
     for (Tet t : stuck) {
         heed(options.watch);
+        if (budget.spent()) break;
         if (!alive(mesh, t)) continue;
-        const double ratio = aspect_ratio(mesh, t);
-        if (!(ratio > options.good_enough)) continue;
-        if (budget.spent()) ++changes.given_up;
-        else retriangulate(mesh, BadCell{ratio, t}, at_time, options, budget, changes);
+        if (const double ratio = aspect_ratio(mesh, t); ratio > options.good_enough)
+            retriangulate(mesh, BadCell{ratio, t}, at_time, options, budget, changes);
     }
     changes.cut_out += static_cast<int>(allowed - budget.left());
+    return budget.spent();
+}
+
+int count_above(const Mesh& mesh, const std::vector<Tet>& cells, double ratio) {
+    return static_cast<int>(
+        std::ranges::count_if(cells, [&](Tet t) { return alive(mesh, t) && aspect_ratio(mesh, t) > ratio; }));
 }
 
 }  // namespace
@@ -401,6 +414,7 @@ Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
     Changes changes;
     std::vector<Tet> tried;
     std::ranges::copy_if(cells, std::back_inserter(tried), [&](Tet t) { return alive(mesh, t); });
+    const bool tangled = is_tangled(mesh, tried);
     for (int round = 0; round < most_swap_rounds && !tried.empty(); ++round) {
         const auto proposals =
             propose_all(tried.size(), [&](std::size_t i) { return swap_longest_edge(mesh, tried[i], limit); },
@@ -413,6 +427,7 @@ Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
                 again.push_back(tried[i]);
                 continue;
             }
+            if (tangled && !fits(mesh, cavity)) continue;
             replaced.add(cavity);
             kropla::carry_out(mesh, cavity, changes);
             ++changes.swaps;
@@ -442,8 +457,9 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time,
         left = treat(mesh, std::move(bad), at_time, options, allowed, changed, changes);
         if (changes.cells.size() + changes.vertices.size() == before) break;
     }
-    if (options.clusters) retriangulate(mesh, left, at_time, options, cells.size(), changes);
-    else if (allowed.treatments.spent()) changes.given_up += static_cast<int>(left.size());
+    bool spent = allowed.treatments.spent();
+    if (options.clusters) spent |= retriangulate(mesh, left, at_time, options, cells.size(), changes);
+    if (spent) changes.given_up += count_above(mesh, left, options.good_enough);
     const std::vector<Tet> added(changes.cells.begin() + swapped, changes.cells.end());
     changes += swap_for_energy(mesh, added, options);
     return changes;

@@ -1,6 +1,89 @@
 #include "adapt/propose.h"
 
+#include "mesh/quality.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
 namespace kropla {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// How often a facet stands in the cells removed and added, and whether it has a patch where it is on the boundary.
+struct Uses {
+    int removed = 0, added = 0;
+    bool bounds_removed = false, bounds_added = false;
+};
+
+using FacetUses = std::map<std::array<Vertex, 3>, Uses>;
+
+FacetUses facet_uses(const Mesh& mesh, const Cavity& cavity) {
+    FacetUses uses;
+    const auto of = [&](const std::array<Vertex, 4>& v, std::size_t corner) -> Uses& {
+        const auto& [i, j, k] = tet_facets[corner];
+        std::array<Vertex, 3> facet = {v[at(i)], v[at(j)], v[at(k)]};
+        std::ranges::sort(facet);
+        return uses[facet];
+    };
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        for (Tet t : cavity.removed) {
+            Uses& facet = of(mesh.tets[t], corner);
+            ++facet.removed;
+            facet.bounds_removed |= !mesh.neighbour[t][corner].exists();
+        }
+        for (const NewTet& t : cavity.added) {
+            Uses& facet = of(t.vertices, corner);
+            ++facet.added;
+            facet.bounds_added |= t.patch[corner].exists();
+        }
+    }
+    return uses;
+}
+
+bool closes(const Uses& facet) {
+    if (facet.removed == 1) return facet.added == 1 || (facet.added == 0 && facet.bounds_removed);
+    return facet.added == 0 || facet.added == 2 || (facet.added == 1 && facet.bounds_added);
+}
+
+/// Has a cell that is not removed all of these vertices?
+bool stands_elsewhere(const Mesh& mesh, std::span<const Vertex> vertices, const std::set<Tet>& removed) {
+    const auto is_known = [&](Vertex v) { return at(v.value) < mesh.position.size() && alive(mesh, v); };
+    if (!std::ranges::all_of(vertices, is_known)) return false;
+    const auto around = ball(mesh, vertices.front());
+    return std::ranges::any_of(around, [&](Tet t) {
+        return !removed.contains(t) &&
+               std::ranges::all_of(vertices, [&](Vertex v) { return corner_of(mesh, t, v) >= 0; });
+    });
+}
+
+}  // namespace
+
+bool is_tangled(const Mesh& mesh, std::span<const Tet> cells) {
+    return std::ranges::any_of(cells, [&](Tet t) { return alive(mesh, t) && !std::isfinite(aspect_ratio(mesh, t)); });
+}
+
+bool fits(const Mesh& mesh, const Cavity& cavity) {
+    const std::set<Tet> removed(cavity.removed.begin(), cavity.removed.end());
+    std::set<std::array<Vertex, 2>> edges;  // of the cells removed
+    const auto edges_of = [](const std::array<Vertex, 3>& f) {
+        return std::array{std::array{f[0], f[1]}, std::array{f[0], f[2]}, std::array{f[1], f[2]}};
+    };
+    const auto uses = facet_uses(mesh, cavity);
+    for (const auto& [facet, use] : uses) {
+        if (!closes(use)) return false;
+        if (use.removed > 0)
+            for (const auto& edge : edges_of(facet)) edges.insert(edge);
+    }
+    for (const auto& [facet, use] : uses) {
+        if (use.removed > 0) continue;
+        if (stands_elsewhere(mesh, facet, removed)) return false;
+        for (const auto& edge : edges_of(facet))
+            if (!edges.contains(edge) && stands_elsewhere(mesh, edge, removed)) return false;
+    }
+    return !cavity.added.empty();
+}
 
 void rename_inserted(Cavity& cavity, Vertex then, const Mesh& now) {
     if (cavity.inserted.empty()) return;

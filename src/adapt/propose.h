@@ -52,6 +52,14 @@ private:
     IndexSet<Tet> cells_;
 };
 
+/// Is one of the cells turned over, flat, or not finite?
+[[nodiscard]] bool is_tangled(const Mesh& mesh, std::span<const Tet> cells);
+
+/// Would the mesh still be one: each facet between two cells or on the boundary as before, and no edge or facet of the
+/// added cells elsewhere already? For a proposal of positive cells this goes without saying if all cells of the mesh are
+/// positive, too; but not in one that is tangled, where cells lie over each other.
+[[nodiscard]] bool fits(const Mesh& mesh, const Cavity& cavity);
+
 /// Makes a proposal that inserts one vertex, made when `then` was the next to be inserted, fit the mesh as it is
 /// now.
 void rename_inserted(Cavity& cavity, Vertex then, const Mesh& now);

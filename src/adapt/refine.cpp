@@ -258,12 +258,16 @@ std::optional<Cavity> split(const Mesh& mesh, Edge e, Tet t, const AdaptOptions&
 
 }  // namespace
 
-Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options) {
+Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options,
+                      bool tangled) {
     Changes changes;
     const EdgeMeasure measure(mesh, zone, at_time);
     const auto wrong = wrong_edges(mesh, zone, options);
     const auto first_long = std::ranges::find_if(wrong, [](const WrongEdge& w) { return w.ratio > 1; });
     const auto shorts = static_cast<std::size_t>(first_long - wrong.begin());
+    const auto can_be_done = [&](const std::optional<Cavity>& cavity) {
+        return cavity && (!tangled || fits(mesh, *cavity));
+    };
     const auto collapse = [&](std::size_t i, auto ball_of) {
         return collapse_either_way(mesh, wrong[i].edge, measure, options, ball_of);
     };
@@ -275,7 +279,7 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
         heed(options.watch);
         std::optional<Cavity> cavity = std::move(proposed);
         if (replaced.outdates(*cavity)) cavity = cell_at(mesh, wrong[i]) ? collapse(i, in_mesh) : std::nullopt;
-        if (!cavity) continue;
+        if (!can_be_done(cavity)) continue;
         replaced.add(*cavity);
         carry_out(mesh, *cavity, changes);
         ++changes.collapses;
@@ -285,7 +289,7 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
         const auto cell = cell_at(mesh, wrong[i]);
         if (!cell || measure.ratio(wrong[i].edge) != wrong[i].ratio) continue;
         const auto cavity = split(mesh, wrong[i].edge, *cell, options);
-        if (!cavity) continue;
+        if (!can_be_done(cavity)) continue;
         carry_out(mesh, *cavity, changes);
         ++changes.splits;
     }
@@ -296,7 +300,7 @@ Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at
     Zone zone;
     gather(zone, mesh, cells);
     find_sizes(zone, at_time);
-    return adapt_to_size(mesh, zone, at_time, options);
+    return adapt_to_size(mesh, zone, at_time, options, is_tangled(mesh, cells));
 }
 
 }  // namespace kropla

@@ -148,12 +148,15 @@ bool fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& 
     return true;
 }
 
-/// Has the cluster a boundary at finite places, and are its cells so near to their size that few points fit?
+/// Has the cluster a boundary at places that can be triangulated, and are its cells so near to their size that few points fit?
 bool can_be_filled(const Mesh& mesh, const Cluster& cluster, const Hole& hole, const Snapshot& at_time) {
+    constexpr int degree = 6;  // of lengths in the predicates of triangulation, at most
     double points = 0;
     for (Tet t : cluster.cells) points += fitting_points(mesh, t, at_time);
     return points <= most_points_per_cell * static_cast<double>(cluster.cells.size()) &&
-           std::ranges::all_of(hole.points, [](const Vec3& x) { return kropla::is_finite(x); });
+           std::ranges::all_of(hole.points, [&](const Vec3& x) {
+               return std::isfinite(std::pow(distance(x, hole.points.front()), degree));
+           });
 }
 
 std::array<int, 3> rotated_to_least(std::array<int, 3> f) {

@@ -72,8 +72,9 @@ void measure(Zone& zone, const Mesh& mesh);
 /// Do all cells keep a volume of at least `least` of what they have, all the way from `start` to `place`?
 [[nodiscard]] MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least);
 
-/// As for cells: see adapt.h. The zone's places are those of the mesh.
-Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options);
+/// As for cells: see adapt.h. The zone's places are those of the mesh. `tangled`: cells may be turned over.
+Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options,
+                      bool tangled = false);
 void write_places(const Zone& zone, Mesh& mesh);
 
 }  // namespace kropla

@@ -21,24 +21,25 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-const Snapshot unit_cube{{{0, 0, 0}, {1, 1, 1}}, {0.25, 0, 0.25}, {}};
+const Snapshot unit_cube{{{0, 0, 0}, {1, 1, 1}}, {0.2, 0, 0.2}, {}};
 
 /// A cube of which every n-th vertex has gone astray, some onto a neighbour, so that cells are turned over and flat.
 Mesh tangled(std::uint64_t seed, int n) {
-    Mesh mesh = cube_in_cube(4);
+    Mesh mesh = cube_in_cube(6);
     Random random{seed};
     for (Vertex v : all_vertices(mesh)) {
         if (random.below(static_cast<std::uint64_t>(n)) != 0) continue;
         if (!constraint(mesh, v, ball(mesh, v)).free()) continue;
         const auto beside = adjacent_vertices(mesh, v);
         if (random.below(3) == 0) mesh.position[v] = mesh.position[beside[random.below(beside.size())]];
-        else mesh.position[v] += 0.5 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        else mesh.position[v] += 0.3 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     }
     return mesh;
 }
 
 int count_turned(const Mesh& mesh) {
-    return static_cast<int>(std::ranges::count_if(all_tets(mesh), [&](Tet t) { return aspect_ratio(mesh, t) == infinity; }));
+    const auto is_turned = [&](Tet t) { return aspect_ratio(mesh, t) == infinity; };
+    return static_cast<int>(std::ranges::count_if(all_tets(mesh), is_turned));
 }
 
 /// Cells of the proposal are all the right way round. Counts it.
@@ -149,7 +150,7 @@ TEST(Budget, TheLadderSaysWhenItIsSpent) {
     const int cells = count_tets(mesh);
     const Changes changes = repair(mesh, all_tets(mesh), snapshot(sphere_in_box(), 0), unreachable);
     EXPECT_GT(changes.given_up, cells / 2);
-    EXPECT_LE(changes.cut_out, 20000 + 2 * cells);
+    EXPECT_LE(changes.cut_out, 20000 + 4 * cells);
     EXPECT_EQ(verify(mesh), "");
 }
 

@@ -75,7 +75,7 @@ TEST(SafeFraction, OfAPrismAgreesWithSamplingTheWay) {
             if (jacobian_on_the_way(from, to, double(i) / samples) <= 0) first_bad = i;
         if (first_bad <= samples) {
             EXPECT_LE(fraction, double(first_bad) / samples);
-            EXPECT_GE(fraction, double(first_bad - 1) / samples - 1e-4);
+            EXPECT_NEAR(jacobian_on_the_way(from, to, fraction), 0, 0.01);
             ++stopped;
         } else if (fraction == 1) {
             ++arrived;
@@ -139,7 +139,7 @@ TEST(MovingMesh, AHalfTurnInOneStepIsRefused) {
     EXPECT_NE(refusal->why.find("\"top\""), std::string::npos) << refusal->why;
     EXPECT_NE(refusal->why.find("180 degrees"), std::string::npos) << refusal->why;
     const double most = std::acos(2 * least_volume_kept - 1);
-    EXPECT_NEAR(refusal->advised_dt, most / std::numbers::pi, 1e-12);
+    EXPECT_NEAR(refusal->advised_dt, most / std::numbers::pi, 1e-6);
     EXPECT_EQ(moving.current(), start);
     moving.refuse();
     EXPECT_TRUE(attempt(moving, 0.1));
