@@ -57,10 +57,10 @@ int write_initial_mesh(const MeshOptions& options) {
     return done;
 }
 
-/// A full disk behind a redirected output shows when what was printed is handed over.
-void flush_output() {
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-        throw FileError(fmt::format("the output cannot be written: {}", std::strerror(errno)));
+/// Prints what was found; a full disk behind a redirected output is seen at once. Throws FileError.
+void hand_over(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        throw FileError(fmt::format("what was found cannot be written: {}", std::strerror(errno)));
 }
 
 /// All about one file; of several, a line each and a summary.
@@ -68,19 +68,16 @@ int check_meshes(const std::vector<std::filesystem::path>& paths) {
     const auto files = files_to_check(paths);
     if (files == paths && files.size() == 1) {
         const CheckReport report = check_file(files.front());
-        fmt::print("{}", report.text);
-        flush_output();
+        hand_over(report.text);
         return report.valid ? done : file_trouble;
     }
     std::size_t valid = 0;
     for (const auto& file : files) {
         const CheckLine line = check_line(file);
         if (line.valid) ++valid;
-        fmt::print("{}", line.text);
-        flush_output();
+        hand_over(line.text);
     }
-    fmt::print("{} of {} files are valid\n", valid, files.size());
-    flush_output();
+    hand_over(fmt::format("{} of {} files are valid\n", valid, files.size()));
     return valid == files.size() ? done : file_trouble;
 }
 

@@ -177,7 +177,7 @@ std::optional<Crossing> find_crossing(const Mesh& mesh) {
             const Triangle t = triangle_of(mesh, facets[j]);
             if (!cross(s, t)) return false;
             found = {facets[i], facets[j], in_one_plane(s, t)};
-            return true;
+            return found->covers;  // which tells more: it is looked for among all that cross the facet
         });
     }
     return found;

@@ -125,6 +125,7 @@ TEST(Project, RefusesWhatIsNotFinite) {
         NodalValues good = noise(mesh.before, 1);
         for (const auto& weight : {std::vector{1.0, value}, std::vector{1.0}})  // or one is missing
             EXPECT_THROW((void)project(plan, good, {.limit = true, .weight = weight}), FieldError) << value;
+        good.resize(mesh.before.position.size());
         EXPECT_EQ(good, noise(mesh.before, 1));
     }
 }
@@ -162,11 +163,12 @@ Domain passing_bodies(Random& random, double gap, bool three) {
     return domain;
 }
 
-/// A hot body, a warm one, and cold surroundings: all their difference is in one cell.
-NodalValues temperatures(const Mesh& mesh) {
+/// Hot bodies with a layer of a cell or so around them.
+NodalValues temperatures(const Mesh& mesh, const Snapshot& at) {
     return nodal_values(mesh, [&](Vertex v) {
-        if (at_region(mesh, v, Region(1))) return 2400.0;
-        return at_region(mesh, v, Region(2)) ? 500.0 : 300.0;
+        const bool in_body = !at_region(mesh, v, surroundings);
+        const double away = in_body ? 0 : distance_to_bodies(at, mesh.position[v]);
+        return 300 + 2100 * std::exp(-away / at.size.surface);
     });
 }
 
@@ -197,7 +199,8 @@ TEST_P(Passing, LosesNothingAndKeepsItsBounds) {
         const TransferPlan plan =
             plan_transfer(moving.before(), moving.current(), changes.cells, changes.vertices);
         changed += plan.changed.come.size();
-        const NodalValues hot = temperatures(moving.before());
+        EXPECT_LE(moving.statistics().cells_touched, count_tets(moving.before()));
+        const NodalValues hot = temperatures(moving.before(), snapshot(domain, moving.time()));
         for (const NodalValues& old : {noise(moving.before(), GetParam()), hot}) {
             NodalValues field = old;
             const TransferReport report = project(plan, field);
