@@ -308,14 +308,13 @@ const Changes& MovingMesh::remesh() {
     copy_changed(before_, current_, {}, moved_);
     remeshed_ = true;
     Changes& changes = statistics_.remeshed;
-    AdaptOptions options = options_;
-    options.watch = nullptr;  // all ranks have agreed on the step
-    changes = remesh(options);
+    changes = remesh(options_);
     if (worst_aspect_ratio_of(current_, changes.cells) > options_.floor) {
         // What passed the floor on its way stayed there: taken back, and done again without passing it.
         statistics_.redone = true;
         note_replaced(changes);
         copy_changed(current_, before_, replaced_.list(), moved_);
+        AdaptOptions options = options_;
         options.passing = std::min(options.passing, options.floor);
         changes = remesh(options);
     }

@@ -73,7 +73,10 @@ double CaseTable::positive(std::string_view key) const {
 
 std::int64_t CaseTable::integer(std::string_view key, std::int64_t least, std::int64_t most) const {
     const std::string must = fmt::format("must be a whole number from {} to {}", least, most);
-    const auto value = node(key, must).value_exact<std::int64_t>();
+    const toml::node& given = node(key, must);
+    const auto value = given.value_exact<std::int64_t>();
+    if (const auto number = finite_number(given); number && !value && *number == std::floor(*number))
+        refuse(key, fmt::format("{}, got {:.1f}, which has a fraction to TOML; write {:.0f}", must, *number, *number));
     if (!value || *value < least || *value > most) refuse_value(key, must);
     return *value;
 }

@@ -4,9 +4,11 @@
 #include "app/body_sizes.h"
 #include "app/check.h"
 #include "app/check_files.h"
+#include "app/command_line.h"
 #include "app/initial_mesh.h"
 #include "app/interrupt.h"
 #include "app/new_case.h"
+#include "app/progress.h"
 #include "app/run.h"
 #include "base/error.h"
 #include "io/vtk.h"
@@ -22,6 +24,9 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <iostream>
+#include <new>
+#include <system_error>
 
 namespace kropla {
 namespace {
@@ -30,7 +35,10 @@ struct MeshOptions {
     std::filesystem::path case_file, out;
 };
 
-Mesh mesh_of(const Case& it, const Watch& watch) {
+Mesh mesh_of(const Case& it, Watch& watch) {
+    Progress progress;
+    if (progress.on_terminal())  // else what is printed is the result alone
+        watch.progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
     try {
         check_all_paths(it, &watch);
         return initial_mesh(it, &watch);
@@ -57,10 +65,17 @@ int write_initial_mesh(const MeshOptions& options) {
     return done;
 }
 
-/// Prints what was found; a full disk behind a redirected output is seen at once. Throws FileError.
+/// A full disk behind a redirected output shows when what was printed is handed over.
+void flush_output() {
+    std::cout.flush();  // CLI11's
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.good())
+        throw FileError(fmt::format("the output cannot be written: {}", std::strerror(errno)));
+}
+
+/// Prints what was found. Throws FileError.
 void hand_over(std::string_view text) {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-        throw FileError(fmt::format("what was found cannot be written: {}", std::strerror(errno)));
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    flush_output();
 }
 
 /// All about one file; of several, a line each and a summary.
@@ -82,7 +97,13 @@ int check_meshes(const std::vector<std::filesystem::path>& paths) {
 }
 
 int report_run(const std::filesystem::path& folder) {
-    write_report(folder);
+    Watch watch;
+    const CatchInterrupts catching(watch);
+    try {
+        write_report(folder, &watch);
+    } catch (const Interrupted&) {
+        throw Interrupted("interrupted; the report was not written");
+    }
     fmt::print("{}: written\n", (folder / "report.html").string());
     return done;
 }
@@ -109,6 +130,7 @@ void describe_run(CLI::App& app, RunOptions& options) {
     run->add_option("CASE", options.case_file, "the case file (TOML; see `kropla new`)")->required();
     run->add_option("--out", options.out, "the folder that the run fills")->required()->type_name("DIR");
     run->add_flag("--resume", options.resume, "go on from the checkpoint in the folder");
+    run->add_flag("--force", options.force, "overwrite the run that the folder holds");
     run->add_flag("--test-rollback", options.test_rollback,
                   "refuse every step once after it was computed and redo it; the results are the same");
     run->add_option("--threads", options.threads,
@@ -119,7 +141,9 @@ void describe_run(CLI::App& app, RunOptions& options) {
         "PETSc's options reach it untouched; put them last:\n"
         "  kropla run droplet.toml --out droplet -ksp_monitor -ksp_rtol 1e-10\n"
         "Several processes share the solution: mpirun -n 2 kropla run droplet.toml --out droplet\n"
-        "Look at the result: paraview droplet/frames.pvd");
+        "Look at the result: paraview droplet/frames.pvd\n"
+        "Ctrl-C drops the step under way and leaves a checkpoint; --resume goes on from it, to the bit as if nothing\n"
+        "had been, also with a later time.end or another output.every in the case. A second Ctrl-C ends at once.");
 }
 
 void describe_others(CLI::App& app, Request& request) {
@@ -159,7 +183,8 @@ void describe(CLI::App& app, Request& request) {
         "  kropla run droplet.toml --out droplet\n"
         "  paraview droplet/frames.pvd\n"
         "Exit codes: 0 done, 2 bad arguments or case, 3 the mesh cannot keep its floors,\n"
-        "4 the solver failed, 5 file trouble, 130 interrupted with a checkpoint written.");
+        "4 the solver failed, 5 a file cannot be read or written, or a mesh is not valid, 6 not enough memory,\n"
+        "70 internal error, 130 interrupted (of a run, the checkpoint is written).");
 }
 
 int dispatch(const CLI::App& app, const Request& request) {
@@ -177,6 +202,24 @@ int complain(const std::string& what, int code) {
     return code;
 }
 
+/// The case of a run or mesh; of other commands the file or folder.
+const std::filesystem::path& subject(const CLI::App& app, const Request& request) {
+    if (app.got_subcommand("run")) return request.run.case_file;
+    return app.got_subcommand("mesh") ? request.mesh.case_file : request.file;
+}
+
+/// What memory was asked for, if that is a case.
+std::string too_much(const CLI::App& app, const Request& request) {
+    if (!app.got_subcommand("run") && !app.got_subcommand("mesh")) return "not enough memory";
+    try {
+        const Case it = read_case(subject(app, request));
+        return fmt::format("{}: not enough memory for about {:.1e} tets; larger size.surface and size.far take less",
+                           subject(app, request).string(), estimate_tets(it.domain));
+    } catch (const std::exception&) {
+        return "not enough memory";
+    }
+}
+
 /// Carries a request out. Bodies that do not fit are a fault of the case, which is named.
 int carry_out(const CLI::App& app, const Request& request) {
     try {
@@ -184,8 +227,7 @@ int carry_out(const CLI::App& app, const Request& request) {
     } catch (const CaseError& error) {
         return complain(error.what(), bad_case);
     } catch (const DomainError& error) {
-        const auto& file = app.got_subcommand("run") ? request.run.case_file : request.mesh.case_file;
-        return complain(fmt::format("{}: {}", file.string(), error.what()), bad_case);
+        return complain(fmt::format("{}: {}", subject(app, request).string(), error.what()), bad_case);
     } catch (const Interrupted& error) {
         return complain(error.what(), interrupted);
     } catch (const FloorError& error) {
@@ -198,7 +240,45 @@ int carry_out(const CLI::App& app, const Request& request) {
         return complain(error.what(), file_trouble);
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(fmt::format("{}: {}", error.path1().string(), error.code().message()), file_trouble);
+    } catch (const std::bad_alloc&) {
+        return complain(too_much(app, request), resources_used_up);
+    } catch (const std::system_error& error) {  // no more threads, say
+        return complain(fmt::format("the system refused: {}", error.what()), resources_used_up);
     }
+}
+
+/// Has all that was said arrived?
+int end_with(int code) {
+    try {
+        flush_output();
+        return code;
+    } catch (const FileError& error) {
+        return complain(error.what(), file_trouble);
+    }
+}
+
+int execute_or_throw(const std::vector<std::string>& arguments) {
+    Request request;
+    CLI::App app("Kropla: finite-element simulation on a 3D mesh that follows moving boundaries", "kropla");
+    describe(app, request);
+    PartedArguments parted = part_arguments(arguments);
+    try {
+        check_words(app, parted.others);
+        std::ranges::reverse(parted.others);  // CLI11 takes them from the back
+        app.parse(parted.others);
+    } catch (const CLI::Success& asked) {  // --help, --version
+        return end_with(app.exit(asked));
+    } catch (const CLI::ParseError& error) {
+        return complain(what_is_wrong(app, error), bad_case);
+    } catch (const CaseError& error) {
+        return complain(error.what(), bad_case);
+    }
+    if (!parted.solver.empty() && !app.got_subcommand("run")) {
+        return complain(fmt::format("{} is an option of `kropla run`", parted.solver.front()), bad_case);
+    }
+    request.run.solver_options = parted.solver;
+    const int code = carry_out(app, request);
+    return code == done ? end_with(code) : code;
 }
 
 }  // namespace
@@ -225,23 +305,14 @@ PartedArguments part_arguments(const std::vector<std::string>& arguments) {
 }
 
 int execute(std::vector<std::string> arguments) {
-    Request request;
-    CLI::App app("Kropla: finite-element simulation on a 3D mesh that follows moving boundaries", "kropla");
-    describe(app, request);
-    PartedArguments parted = part_arguments(arguments);
-    std::ranges::reverse(parted.others);  // CLI11 takes them from the back
     try {
-        app.parse(parted.others);
-    } catch (const CLI::Success& asked) {  // --help, --version
-        return app.exit(asked);
-    } catch (const CLI::ParseError& error) {
-        return complain(fmt::format("{} (see kropla --help)", error.what()), bad_case);
+        return execute_or_throw(arguments);
+    } catch (const std::exception& error) {
+        return complain(fmt::format("internal error: {}; please report it, with the case file", error.what()),
+                        internal_error);
+    } catch (...) {
+        return complain("internal error; please report it, with the case file", internal_error);
     }
-    if (!parted.solver.empty() && !app.got_subcommand("run")) {
-        return complain(fmt::format("{} is an option of `kropla run`", parted.solver.front()), bad_case);
-    }
-    request.run.solver_options = parted.solver;
-    return carry_out(app, request);
 }
 
 }  // namespace kropla

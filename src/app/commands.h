@@ -12,7 +12,9 @@ enum ExitCode : int {
     floors_unreachable = 3,
     solver_failed = 4,
     file_trouble = 5,
-    interrupted = 130,  // with a checkpoint written
+    resources_used_up = 6,  // memory, threads
+    internal_error = 70,    // our own mistake
+    interrupted = 130,      // with a checkpoint written, if there was a first mesh
 };
 
 /// Does what the arguments (without the program's name) ask for. Results go to stdout; what went wrong goes

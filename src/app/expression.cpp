@@ -58,6 +58,9 @@ struct Expression::Compiled {
         if (const std::size_t at = assignment(text); at > 0) {
             throw CaseError(fmt::format("\"{}\": \"=\" at character {} is out of place", text, at));
         }
+        if (const std::size_t at = text.find("**"); at != std::string::npos) {
+            throw CaseError(fmt::format("\"{}\": \"**\" at character {}: a power is written ^, as in t^2", text, at + 1));
+        }
         try {
             compile();
         } catch (const mu::ParserError& error) {

@@ -23,15 +23,29 @@ std::size_t columns(std::FILE* out) {
 }  // namespace
 
 std::string spoken_time(double seconds) {
-    constexpr std::array<std::pair<double, std::string_view>, 4> units = {
-        {{1, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}}};
+    constexpr std::array<std::pair<double, std::string_view>, 10> units = {{{31556952, "yr"},
+                                                                           {86400, "d"},
+                                                                           {3600, "h"},
+                                                                           {60, "min"},
+                                                                           {1, "s"},
+                                                                           {1e-3, "ms"},
+                                                                           {1e-6, "us"},
+                                                                           {1e-9, "ns"},
+                                                                           {1e-12, "ps"},
+                                                                           {1e-15, "fs"}}};
+    constexpr double three_digits = 999.5;
     const double size = std::abs(seconds);
-    const auto fits = [&](const auto& unit) { return size >= 0.9995 * unit.first; };
-    const auto unit = size == 0 ? units.begin() : std::ranges::find_if(units, fits);
-    const auto [scale, name] = unit == units.end() ? units.back() : *unit;
-    const double value = seconds / scale;
+    if (size == 0) return "0.00 s";
+    // Up to seconds a unit begins at one of it; minutes and longer where the one below has no digits left.
+    const auto fits = [&](const auto& unit) {
+        const auto& [scale, name] = unit;
+        return scale <= 1 ? size >= 0.9995 * scale : size >= three_digits * (&unit + 1)->first;
+    };
+    const auto unit = std::ranges::find_if(units, fits);
+    if (unit == units.end() || size >= three_digits * unit->first) return fmt::format("{:.2e} s", seconds);
+    const double value = seconds / unit->first;
     const int decimals = std::abs(value) < 9.995 ? 2 : std::abs(value) < 99.95 ? 1 : 0;
-    return fmt::format("{:.{}f} {}", value, decimals, name);
+    return fmt::format("{:.{}f} {}", value, decimals, unit->second);
 }
 
 std::string clock_time(double seconds) {
@@ -39,6 +53,12 @@ std::string clock_time(double seconds) {
     const long hours = whole / 3600, minutes = whole / 60 % 60;
     return hours > 0 ? fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60)
                      : fmt::format("{}:{:02}", minutes, whole % 60);
+}
+
+std::string spoken_count(double count) {
+    std::string text = fmt::format("{:.0f}", count);
+    for (std::ptrdiff_t i = std::ssize(text) - 3; i > 0; i -= 3) text.insert(static_cast<std::size_t>(i), ",");
+    return text;
 }
 
 std::string progress_line(const ProgressRow& row) {
@@ -54,24 +74,42 @@ Progress::Progress(std::FILE* out) : out_(out), terminal_(columns(out) > 0) {}
 Progress::~Progress() { finish(); }
 
 void Progress::show(const ProgressRow& row) {
-    std::string line = progress_line(row);
-    if (!terminal_) {
-        fmt::print(out_, "{}\n", line);
-        std::fflush(out_);
-        return;
-    }
+    if (terminal_) write_over(progress_line(row));
+    else say(progress_line(row));
+}
+
+void Progress::show_stage(std::string_view stage, double share) {
+    using namespace std::chrono_literals;
+    const bool is_new = stage != stage_;
+    const auto now = std::chrono::steady_clock::now();
+    if (!is_new && (!terminal_ || now < stage_shown_ + 100ms)) return;
+    stage_ = stage;
+    stage_shown_ = now;
+    if (terminal_) write_over(fmt::format("initial mesh: {:<16} {:3.0f} %", stage, 100 * share));
+    else say(fmt::format("initial mesh: {}", stage));
+}
+
+void Progress::say(std::string_view line) {
+    finish();
+    print(fmt::format("{}\n", line));
+}
+
+void Progress::write_over(std::string line) {
     if (const std::size_t width = columns(out_); width > 1) line.resize(std::min(line.size(), width - 1));
     const std::size_t rest = standing_ > line.size() ? standing_ - line.size() : 0;
-    fmt::print(out_, "\r{}{:{}}", line, "", rest);  // blanks over what was longer
-    std::fflush(out_);
+    print(fmt::format("\r{}{:{}}", line, "", rest));  // blanks over what was longer
     standing_ = line.size();
 }
 
 void Progress::finish() {
     if (standing_ == 0) return;
-    fmt::print(out_, "\n");
-    std::fflush(out_);
+    print("\n");
     standing_ = 0;
+}
+
+void Progress::print(std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), out_);
+    std::fflush(out_);
 }
 
 }  // namespace kropla

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace kropla {
 
@@ -22,12 +24,17 @@ struct ProgressRow {
 /// Columns stand under each other from step to step.
 [[nodiscard]] std::string progress_line(const ProgressRow& row);
 
-/// A duration in the unit that suits it, three digits: "2.40 ms".
+/// A duration in the unit that suits it, from fs to years, three digits: "2.40 ms". Where none does, in seconds with an
+/// exponent.
 [[nodiscard]] std::string spoken_time(double seconds);
 /// What is left, as "0:08", "12:30" or "3:05:00".
 [[nodiscard]] std::string clock_time(double seconds);
 
-/// Writes progress lines: on a terminal one that is written over, else one under the other.
+/// A count with its thousands apart: "74,364".
+[[nodiscard]] std::string spoken_count(double count);
+
+/// Writes progress lines: on a terminal one that is written over, else one under the other. That they cannot be
+/// written, as the disk is full, ends nothing: the stream knows it (`std::ferror`).
 class Progress {
 public:
     explicit Progress(std::FILE* out = stdout);
@@ -35,14 +42,24 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    [[nodiscard]] bool on_terminal() const { return terminal_; }
     void show(const ProgressRow& row);
+    /// How far the initial mesh is: "initial mesh: relaxing points  40 %"; not on a terminal, a line per stage.
+    void show_stage(std::string_view stage, double share);
+    /// A line that stays.
+    void say(std::string_view line);
     /// Leaves the line that stands, so that something else may be printed.
     void finish();
 
 private:
+    void write_over(std::string line);
+    void print(std::string_view text);
+
     std::FILE* out_;
     bool terminal_;
     std::size_t standing_ = 0;  // characters of the line that the next one will be written over
+    std::string stage_;         // shown last, and when
+    std::chrono::steady_clock::time_point stage_shown_ = {};
 };
 
 }  // namespace kropla

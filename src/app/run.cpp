@@ -3,10 +3,14 @@
 #include "app/run.h"
 
 #include "app/case.h"
+#include "app/commands.h"
 #include "app/initial_mesh.h"
 #include "app/interrupt.h"
 #include "app/run_folder.h"
+#include "app/run_lines.h"
+#include "app/run_lock.h"
 #include "app/run_output.h"
+#include "app/same_case.h"
 #include "app/solver_options.h"
 #include "app/step.h"
 #include "base/error.h"
@@ -16,8 +20,13 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
 #include <utility>
 
 namespace kropla {
@@ -40,18 +49,25 @@ State start(const Case& it, const Watch* watch) {
 struct Place {
     State state;
     std::int64_t step = 0;
-    double next_dt;  // [s]
+    double next_dt;       // [s]
+    int steps_given = 0;  // time.steps as the case file has it (same_case.h)
 };
 
-Place resume(const Case& it, const std::filesystem::path& folder, const Watch* watch) {
-    Checkpoint saved = read_checkpoint(folder / checkpoint_name);
-    if (saved.case_text != to_toml(it))
-        throw CaseError(fmt::format("{}: the run in it is of another case than the one given; its own is {}",
-                                    folder.string(), (folder / "case.toml").string()));
+constexpr const char* steps_given_name = "steps_given";
+
+/// Makes the case one with which the run goes on.
+Place resume(Case& it, const RunOptions& options, const Watch* watch) {
+    Checkpoint saved = read_checkpoint(options.out / checkpoint_name);
+    const int given = it.time.steps;
+    const auto known = saved.values.find(steps_given_name);
+    const double had = known != saved.values.end() ? known->second : 0;
+    go_on_with(it, {saved.case_text, static_cast<int>(had), saved.time}, options.case_file.string(),
+               options.out.string());
     return {{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it, watch)),
              std::move(saved.fields)},
             saved.step,
-            saved.next_dt};
+            saved.next_dt,
+            given};
 }
 
 Checkpoint checkpoint_of(const Place& place, const Case& it) {
@@ -61,7 +77,7 @@ Checkpoint checkpoint_of(const Place& place, const Case& it) {
             .next_dt = place.next_dt,
             .step = place.step,
             .case_text = to_toml(it),
-            .values = {}};
+            .values = {{steps_given_name, place.steps_given}}};
 }
 
 /// The way to the next of the wanted times, or as much of it as `next_dt` allows.
@@ -96,6 +112,7 @@ public:
         }
     }
 
+    [[nodiscard]] const Place& place() const { return place_; }
     [[nodiscard]] Checkpoint checkpoint() const { return checkpoint_of(place_, it_); }
 
 private:
@@ -103,7 +120,7 @@ private:
         const State& state = place_.state;
         output_.write_step(place_.step, report, state);
         if (!report.beyond_bounds.empty() && !std::exchange(warned_, true))
-            output_.say(("warning: " + report.beyond_bounds).c_str());
+            output_.say("warning: " + report.beyond_bounds);
         if (place_.step % it_.output.every == 0 || at_end(place_, it_.time)) {
             output_.write_frame(place_.step, state);
             output_.write_checkpoint(checkpoint());
@@ -137,7 +154,7 @@ auto together(const Ranks& ranks, Deed deed) {
 }
 
 /// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint.
-int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks,
+int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& progress,
                const std::filesystem::path& case_file) {
     try {
         together(ranks, [&] { loop.run(); });
@@ -146,7 +163,7 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks,
         throw;  // the checkpoint could not be written either
     } catch (const Interrupted&) {
         output.write_checkpoint(loop.checkpoint());
-        output.say("interrupted: a checkpoint is written; go on with --resume");
+        progress.say("interrupted: a checkpoint is written; go on with --resume");
         return 130;
     } catch (const CaseError& error) {  // a quantity that has no value: first asked for here
         output.write_checkpoint(loop.checkpoint());
@@ -157,14 +174,23 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks,
     }
 }
 
+/// The run's first mesh, told on the way.
+Place begin(const Case& it, const Ranks& ranks, Progress& progress) {
+    const auto start_time = std::chrono::steady_clock::now();
+    ranks.watch->progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
+    Place place{start(it, ranks.watch), 0, it.time.end / it.time.steps, it.time.steps};
+    ranks.watch->progress = {};
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
+    progress.say(mesh_line(place.state.moving.reference(), taken.count()));
+    return place;
+}
+
 /// Where a run begins. Nothing is written yet.
-Place first_place(const RunOptions& options, const Case& it, const Ranks& ranks) {
+Place first_place(const RunOptions& options, Case& it, const Ranks& ranks, Progress& progress) {
     try {
         return together(ranks, [&] {
             check_all_paths(it, ranks.watch);
-            const double wanted = it.time.end / it.time.steps;
-            Place place = options.resume ? resume(it, options.out, ranks.watch)
-                                         : Place{start(it, ranks.watch), 0, wanted};
+            Place place = options.resume ? resume(it, options, ranks.watch) : begin(it, ranks, progress);
             heed(ranks);  // all have looked at the folder before one writes
             return place;
         });
@@ -174,17 +200,61 @@ Place first_place(const RunOptions& options, const Case& it, const Ranks& ranks)
     }
 }
 
-int run_with(const RunOptions& options, const Ranks& ranks) {
-    const Case it = read_case(options.case_file);
+/// Rank 0 holds the folder, for all; all look at it before.
+std::unique_ptr<RunLock> hold_folder(const RunOptions& options, const Ranks& ranks) {
     check_run_folder(options);
-    Place place = first_place(options, it, ranks);
-    RunOutput output(options, it, ranks.rank == 0, place.step, place.state);
+    MPI_Barrier(ranks.communicator);
+    std::unique_ptr<RunLock> lock;
+    std::exception_ptr trouble;
+    if (ranks.rank == 0) {
+        try {
+            lock = std::make_unique<RunLock>(options.out);
+        } catch (...) {
+            trouble = std::current_exception();
+        }
+    }
+    int held = trouble ? 0 : 1;
+    MPI_Bcast(&held, 1, MPI_INT, 0, ranks.communicator);
+    if (trouble) std::rethrow_exception(trouble);
+    if (held == 0) throw CaseError("the folder of the run cannot be held");
+    return lock;
+}
+
+/// The run is done, and the watch heeded, or interrupted, and the watch has said so already.
+void write_run_report(const std::filesystem::path& folder, const Watch* watch) {
+    try {
+        write_report(folder, watch);
+    } catch (const Interrupted&) {
+        throw Interrupted(fmt::format("interrupted while the report was made; the run is done. kropla report {}",
+                                      folder.string()));
+    }
+}
+
+int run_with(const RunOptions& options, const Ranks& ranks) {
+    const auto start_time = std::chrono::steady_clock::now();
+    Case it = read_case(options.case_file);
+    const auto lock = hold_folder(options, ranks);
+    Progress progress;
+    if (!options.resume) progress.say(opening_line(options, it));
+    Place place = first_place(options, it, ranks, progress);
+    const std::string reached = spoken_time(place.state.moving.time());
+    if (options.resume && at_end(place, it.time)) {
+        progress.say(fmt::format("{}: the run is finished: step {} at {}; nothing was done. With a later time.end it "
+                                 "goes on", options.out.string(), place.step, reached));
+        return 0;
+    }
+    if (options.resume)
+        progress.say(fmt::format("{}: goes on after step {} at {}, until {}", options.out.string(), place.step, reached,
+                                 spoken_time(it.time.end)));
+    RunOutput output(options, it, ranks.rank == 0, place.step, place.state, progress);
     if (!options.resume) output.write_checkpoint(checkpoint_of(place, it));
     TimeLoop loop(it, ranks, std::move(place), output, options.test_rollback);
-    const int code = run_to_end(loop, output, ranks, options.case_file);
+    const int code = run_to_end(loop, output, ranks, progress, options.case_file);
     for (const std::string& option : unused_solver_options(options.solver_options))
-        output.say(fmt::format("{} was never used: nothing that was chosen asks for it", option).c_str());
-    if (ranks.rank == 0) write_report(options.out);
+        progress.say(fmt::format("{} was never used: nothing that was chosen asks for it", option));
+    if (ranks.rank == 0) write_run_report(options.out, code == 0 ? ranks.watch : nullptr);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
+    if (code == 0) progress.say(closing_line(options, loop.place().step, loop.place().state.moving.time(), taken.count()));
     return code;
 }
 
@@ -219,6 +289,9 @@ int run(const RunOptions& options) {
         // The other ranks write nothing and would wait for this one for ever.
         fmt::print(stderr, "kropla: {}\n", error.what());
         MPI_Abort(ranks.communicator, 5);
+        throw;
+    } catch (const std::bad_alloc&) {
+        if (ranks.count > 1) MPI_Abort(ranks.communicator, resources_used_up);  // as above
         throw;
     } catch (const std::runtime_error&) {
         // All ranks meet it; a rank that ended with a code of its own would have rank 0 killed before it has spoken.

@@ -10,6 +10,7 @@ struct RunOptions {
     std::filesystem::path case_file;
     std::filesystem::path out;                // the folder that the run fills
     bool resume = false;                      // go on from the folder's checkpoint
+    bool force = false;                       // overwrite the run that the folder holds
     bool test_rollback = false;               // refuse every step once and redo it
     int threads = 0;                          // 0: as many as there are processors
     std::vector<std::string> solver_options;  // PETSc's, as given: "-ksp_type", "cg"

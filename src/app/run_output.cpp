@@ -37,14 +37,15 @@ const char* rung(const Changes& c) {
 }  // namespace
 
 RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step,
-                     const State& state)
-    : folder_(options.out), it_(it), speak_(speak) {
+                     const State& state, Progress& progress)
+    : overwrite_(options.force), folder_(options.out), it_(it), speak_(speak), progress_(progress) {
     if (!speak_) return;
     if (options.resume) go_on(step, state);
     else start(state);
 }
 
 void RunOutput::start(const State& state) {
+    if (overwrite_) clear_run_folder(folder_);
     std::error_code trouble;
     std::filesystem::create_directories(folder_ / "frames", trouble);
     if (trouble) throw FileError(fmt::format("{}: cannot be made: {}", folder_.string(), trouble.message()));
@@ -59,6 +60,7 @@ void RunOutput::go_on(std::int64_t step, const State& state) {
     series_ = read_pvd(folder_ / "frames.pvd");
     std::erase_if(series_, [&](const SeriesEntry& frame) { return frame.time > state.moving.time(); });
     write_pvd(folder_ / "frames.pvd", series_);
+    write_file(folder_ / "case.toml", to_toml(it_));  // its end, or how often frames are written, may be another
 }
 
 void RunOutput::write_step(std::int64_t step, const StepReport& report, const State& state) {
@@ -131,11 +133,6 @@ void RunOutput::show_progress(std::int64_t step, const StepReport& report, doubl
     if (it_.heat) row.heat_seconds = report.simulate_seconds;
     row.seconds_left = seconds_left;
     progress_.show(row);
-}
-
-void RunOutput::say(const char* line) {
-    progress_.finish();
-    if (speak_) fmt::print("{}\n", line);
 }
 
 }  // namespace kropla

@@ -18,25 +18,27 @@ class RunOutput {
 public:
     /// Starts the folder with the case and the first frame, or continues it after `step`; later frames and
     /// rows, which a run that was ended left behind its checkpoint, are dropped. Throws FileError.
-    RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state);
+    RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state,
+              Progress& progress);
 
     void write_step(std::int64_t step, const StepReport& report, const State& state);
     void write_frame(std::int64_t step, const State& state);
     void write_checkpoint(const Checkpoint& checkpoint);
     void show_progress(std::int64_t step, const StepReport& report, double seconds_left);
-    void say(const char* line);
+    void say(const std::string& line) { progress_.say(line); }
 
 private:
     void start(const State& state);
     void go_on(std::int64_t step, const State& state);
 
+    bool overwrite_;
     std::filesystem::path folder_;
     const Case& it_;
     bool speak_;
     std::vector<SeriesEntry> series_;
     std::optional<StepsTable> table_;
     std::optional<QualitySummary> quality_;  // after the last step
-    Progress progress_;
+    Progress& progress_;
 };
 
 }  // namespace kropla

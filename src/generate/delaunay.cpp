@@ -118,7 +118,7 @@ Triangulation triangulate_in_order(std::span<const Vec3> points, std::span<const
     k.mark.reserve(cells);
     start(k);
     for (uint32_t p = 5; p < k.sites.size(); ++p) {
-        if (p % points_at_once == 0) heed(watch);
+        if ((p - 5) % points_at_once == 0) heed(watch);
         delaunay::insert(k, p);
     }
     const std::vector<Cell> finite = finite_cells(std::move(k));

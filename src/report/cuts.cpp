@@ -77,15 +77,19 @@ int axis_across_path(const std::vector<CutFrame>& frames) {
     return best;
 }
 
-std::vector<CutFrame> read_cuts(const RunFiles& run) {
+std::vector<CutFrame> read_cuts(const RunFiles& run, const Watch* watch) {
     std::vector<CutFrame> frames;
     for (const SeriesEntry& entry : start_middle_end(run.frames)) {
+        heed(watch);
         CutFrame f{.time = entry.time, .frame = read_vtu(run.dir / entry.file), .spot = {}, .cut = {}};
         f.spot = spot_of(f.frame.mesh);
         frames.push_back(std::move(f));
     }
     const int axis = axis_across_path(frames);
-    for (CutFrame& f : frames) f.cut = cut_mesh(f.frame.mesh, plane_across(axis, f.spot.centre));
+    for (CutFrame& f : frames) {
+        heed(watch);
+        f.cut = cut_mesh(f.frame.mesh, plane_across(axis, f.spot.centre));
+    }
     return frames;
 }
 
@@ -143,11 +147,12 @@ std::string field_rows(const std::vector<CutFrame>& frames) {
 
 }  // namespace
 
-std::string draw_cuts(const RunFiles& run) {
+std::string draw_cuts(const RunFiles& run, const Watch* watch) {
     if (run.frames.empty()) return {};
-    const std::vector<CutFrame> frames = read_cuts(run);
+    const std::vector<CutFrame> frames = read_cuts(run, watch);
     const char* axis = axis_names[static_cast<std::size_t>(axis_across_path(frames))];
-    const auto cells = [](const CutFrame& f, const CutWindow& window) {
+    const auto cells = [&](const CutFrame& f, const CutWindow& window) {
+        heed(watch);
         return draw_cells(f.cut, window);
     };
     std::string html =

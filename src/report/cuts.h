@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "report/run_files.h"
 
 #include <string>
@@ -8,7 +9,7 @@ namespace kropla {
 
 /// The run's mesh and its first field on the plane through its first body's path, at the start, the middle
 /// and the end: a part of the page. Empty without frames. Throws FileError, naming the file, if a frame
-/// cannot be read.
-[[nodiscard]] std::string draw_cuts(const RunFiles& run);
+/// cannot be read, Interrupted if the watch says so.
+[[nodiscard]] std::string draw_cuts(const RunFiles& run, const Watch* watch = nullptr);
 
 }  // namespace kropla

@@ -161,7 +161,7 @@ std::string draw_figures(const RunFiles& run, const RunSummary& summary) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& dir) {
+void write_report(const std::filesystem::path& dir, const Watch* watch) {
     const RunFiles run = read_run_files(dir);
     const RunSummary summary = summarise_run(run);
     std::string html =
@@ -169,7 +169,7 @@ void write_report(const std::filesystem::path& dir) {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/><title>" +
         escaped(run.name) + " – Kropla</title><style>" + std::string(page_style) +
         "</style></head>\n<body><main>";
-    html += draw_head(run, summary) + '\n' + draw_charts(run, summary) + '\n' + draw_cuts(run) + '\n';
+    html += draw_head(run, summary) + '\n' + draw_charts(run, summary) + '\n' + draw_cuts(run, watch) + '\n';
     html += draw_bodies(run) + draw_figures(run, summary);
     html += "\n<section><h2>The case</h2><pre>" + escaped(run.case_text) +
             "</pre></section>\n<p class=\"soft\">Drawn from the files of the run; <code>kropla report</code> "

@@ -1,12 +1,15 @@
 #pragma once
 
+#include "base/watch.h"
+
 #include <filesystem>
 
 namespace kropla {
 
 /// Writes DIR/report.html, "the run on one page", from the files that a run leaves: case.toml, steps.csv,
 /// frames.pvd and three of the frames. The page needs nothing but itself. It also shows a run that is not
-/// finished. Throws FileError, naming the file, if one is missing or broken, or the page cannot be written.
-void write_report(const std::filesystem::path& dir);
+/// finished. Throws FileError, naming the file, if one is missing or broken, or the page cannot be written; Interrupted
+/// if the watch says so: then the page is as it was.
+void write_report(const std::filesystem::path& dir, const Watch* watch = nullptr);
 
 }  // namespace kropla

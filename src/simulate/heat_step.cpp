@@ -147,11 +147,12 @@ struct Boundary {
     std::vector<FixedValue> fixed;              // at the step's end
 };
 
-LinearSystem heat_system(const HeatStep& step, const Cells& cells, const Numbering& numbering, int rank,
+LinearSystem heat_system(const HeatStep& step, const Cells& cells, const Numbering& numbering, const Ranks& ranks,
                          const Boundary& boundary) {
-    const Cells mine = cells_of_rank(step.current, cells, numbering, rank);
-    LinearSystem system = empty_system(step.current, mine, numbering, rank);
+    const Cells mine = cells_of_rank(step.current, cells, numbering, ranks.rank);
+    LinearSystem system = empty_system(step.current, mine, numbering, ranks.rank);
     for_each_cell(mine, [&](const auto& cell) {
+        heed(ranks.watch);
         const auto part = cell_system(step, cell);
         const auto vertices = cell_vertices(step.current, cell);
         add_to(system, numbering, vertices, part.matrix);
@@ -244,7 +245,7 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
                         .carried = carry_bodies(before, current, options),
                         .source = mean_sources(in_time, options),
                         .dt = dt};
-    const LinearSystem system = heat_system(step, cells, numbering, ranks.rank, boundary);
+    const LinearSystem system = heat_system(step, cells, numbering, ranks, boundary);
     const SolverChoice choice{.name = "heat", .preconditioner = preconditioner_for(ranks, system)};
     const Solution solution = solve(ranks, system, choice);
     Array<Vertex, double> after = temperature.values;

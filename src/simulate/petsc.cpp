@@ -3,11 +3,13 @@
 #include "base/error.h"
 
 #include <cstdlib>
+#include <new>
 
 namespace kropla {
 
 void check(PetscErrorCode code) {
     if (code == 0) return;
+    if (code == PETSC_ERR_MEM) throw std::bad_alloc();
     const char* kind = nullptr;
     char* said = nullptr;
     PetscErrorMessage(code, &kind, &said);

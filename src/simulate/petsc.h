@@ -11,7 +11,8 @@
 
 namespace kropla {
 
-/// Throws SolverError with PETSc's own words if `code` is not success. Every call of PETSc goes through here.
+/// Throws SolverError with PETSc's own words if `code` is not success, std::bad_alloc if there
+/// was no memory. Every call of PETSc goes through here.
 void check(PetscErrorCode code);
 
 /// Processes that solve together, and which of them this one is.

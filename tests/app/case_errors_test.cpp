@@ -104,6 +104,8 @@ TEST(CaseErrors, ValuesOutOfRange) {
         {"max_aspect_ratio = 9.5", "max_aspect_ratio = 3",
          "quality.max_aspect_ratio (line 24): must be at least 5 (3 is a perfect tet), got 3"},
         {"end = 0.01", "end = 0", "time.end (line 26): must be positive, got 0"},
+        {"steps = 40", "steps = 40.0",
+         "time.steps (line 27): must be a whole number from 1 to 1000000, got 40.0, which has a fraction to TOML; write 40"},
         {"steps = 40", "steps = 0", "time.steps (line 27): must be a whole number from 1 to 1000000, got 0"},
         {"steps = 40", "steps = 2000000",
          "time.steps (line 27): must be a whole number from 1 to 1000000, got 2000000"},

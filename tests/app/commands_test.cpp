@@ -105,12 +105,64 @@ TEST(Program, KeepsAnotherRunsFolder) {
                      "d: has no checkpoint.h5 to resume from; leave --resume out to start the run");
     write(folder.path / "d" / "steps.csv", "step\n");
     expect_complaint(kropla_program(folder, "run a.toml --out d"), 2,
-                     "d: holds steps.csv, but no checkpoint.h5 to go on from; name another folder with --out");
+                     "d: holds steps.csv, but no checkpoint.h5 to go on from; add --force to overwrite it, or name another "
+                     "folder with --out");
     write(folder.path / "d" / "checkpoint.h5", "");
     expect_complaint(
         kropla_program(folder, "run a.toml --out d"), 2,
-        "d: holds a run already; add --resume to go on with it, or name another folder with --out");
+        "d: holds a run already; add --resume to go on with it or --force to overwrite it, or name another folder with "
+        "--out");
     EXPECT_EQ(contents(folder.path / "d" / "steps.csv"), "step\n");
+}
+
+TEST(Program, SaysWhatWasPerhapsMeant) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", std::string(starting_case()));
+    expect_complaint(kropla_program(folder, "rum a.toml --out d"), 2, "rum: unknown command; did you mean \"run\"?");
+    expect_complaint(kropla_program(folder, "foo"), 2,
+                     "foo: unknown command; known here: run, mesh, check, report, new");
+    expect_complaint(kropla_program(folder, "run a.toml --out d --theads 2"), 2,
+                     "--theads: unknown option of kropla run; did you mean \"--threads\"?");
+    expect_complaint(kropla_program(folder, "run a.toml --theads=2"), 2,
+                     "--theads: unknown option of kropla run; did you mean \"--threads\"?");
+    expect_complaint(kropla_program(folder, "run a.toml"), 2,
+                     "--out is missing: the folder that the run fills (see kropla run --help)");
+    expect_complaint(kropla_program(folder, "run --out d"), 2,
+                     "CASE is missing: the case file (TOML; see `kropla new`) (see kropla run --help)");
+    expect_complaint(kropla_program(folder, "run a.toml --out ''"), 2,
+                     "--out: names no folder; \".\" is the one you are in");
+    expect_complaint(kropla_program(folder, "run a.toml --out d --resume --force"), 2,
+                     "--resume goes on with a run and --force overwrites it: choose one");
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "d"));
+}
+
+TEST(Program, SeesThatItsOutputIsLost) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", std::string(starting_case()));
+    for (const char* command : {"--help", "--version", "run --help", "new drop"}) {
+        SCOPED_TRACE(command);
+        const std::string line = "cd '" + folder.path.string() + "' && '" KROPLA_PROGRAM "' " + command +
+                                 " >/dev/full 2>err.txt";
+        const int status = std::system(line.c_str());
+        EXPECT_EQ(WEXITSTATUS(status), 5);
+        EXPECT_EQ(contents(folder.path / "err.txt"),
+                  "kropla: the output cannot be written: No space left on device\n");
+    }
+}
+
+// A mesh of some million cells in 300 MB: the first large array is more than there is.
+TEST(Program, EndsWithSixIfThereIsNotEnoughMemory) {
+    const TemporaryFolder folder;
+    write(folder.path / "fine.toml", replaced(replaced(starting_case(), "surface = 2e-4", "surface = 4e-5"),
+                                              "far     = 8e-4", "far     = 8e-5"));
+    const std::string line = "cd '" + folder.path.string() + "' && ulimit -v 400000 && '" KROPLA_PROGRAM
+                             "' mesh fine.toml -o m.vtu >out.txt 2>err.txt";
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 6);
+    const std::string err = contents(folder.path / "err.txt");
+    EXPECT_TRUE(err.starts_with("kropla: fine.toml: not enough memory for about ")) << err;
+    EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "m.vtu"));
 }
 
 TEST(Program, WritesACaseToStartFrom) {

@@ -70,6 +70,7 @@ TEST(Expression, SaysWhereItIsWrong) {
               "sin, exp, sqrt");
     EXPECT_EQ(fault("1,2"), "\"1,2\": must be one formula, not 2");
     EXPECT_EQ(fault("t = 5"), "\"t = 5\": \"=\" at character 3 is out of place");
+    EXPECT_EQ(fault("2*t**3"), "\"2*t**3\": \"**\" at character 4: a power is written ^, as in t^2");
     EXPECT_EQ(fault("t == 5 ? 1 : t != 2"), "");
     EXPECT_EQ(fault("1 + y", Variables::time_and_place), "");
 }

@@ -51,7 +51,19 @@ TEST(Progress, SpeaksOfTimeInUnitsThatSuit) {
     EXPECT_EQ(spoken_time(1.25e-5), "12.5 us");
     EXPECT_EQ(spoken_time(3), "3.00 s");
     EXPECT_EQ(spoken_time(250), "250 s");
-    EXPECT_EQ(spoken_time(5e-10), "0.50 ns");
+    EXPECT_EQ(spoken_time(5e-10), "500 ps");
+    EXPECT_EQ(spoken_time(9.996e-13), "1.00 ps");
+    EXPECT_EQ(spoken_time(-2e-14), "-20.0 fs");
+    EXPECT_EQ(spoken_time(3.2e-17), "3.20e-17 s");
+    EXPECT_EQ(spoken_time(999), "999 s");
+    EXPECT_EQ(spoken_time(1200), "20.0 min");
+    EXPECT_EQ(spoken_time(86400), "24.0 h");
+    EXPECT_EQ(spoken_time(4e6), "46.3 d");
+    EXPECT_EQ(spoken_time(1e9), "31.7 yr");
+    EXPECT_EQ(spoken_time(1e11), "1.00e+11 s");
+    EXPECT_EQ(spoken_count(7), "7");
+    EXPECT_EQ(spoken_count(74364), "74,364");
+    EXPECT_EQ(spoken_count(2e7), "20,000,000");
     EXPECT_EQ(clock_time(7.6), "0:08");
     EXPECT_EQ(clock_time(750), "12:30");
     EXPECT_EQ(clock_time(11100), "3:05:00");
@@ -77,6 +89,20 @@ TEST(Progress, WritesPlainLinesIntoAFile) {
     }
     std::rewind(file);
     EXPECT_EQ(drained(fileno(file)), progress_line(row) + "\n" + progress_line(row) + "\n");
+    std::fclose(file);
+}
+
+TEST(Progress, WritesALinePerStageIntoAFile) {
+    std::FILE* file = std::tmpfile();
+    ASSERT_NE(file, nullptr);
+    {
+        Progress progress(file);
+        for (const double share : {0.0, 0.5}) progress.show_stage("relaxing points", share);
+        progress.show_stage("joining cells", 0);
+        progress.say("initial mesh: made");
+    }
+    std::rewind(file);
+    EXPECT_EQ(drained(fileno(file)), "initial mesh: relaxing points\ninitial mesh: joining cells\ninitial mesh: made\n");
     std::fclose(file);
 }
 

@@ -53,6 +53,9 @@ inline std::map<std::string, std::vector<std::string>> lasting_columns(const std
     return found;
 }
 
+/// How much a run said before its first step.
+inline std::size_t opening_of(const std::string& out) { return out.find("\nstep ") + 1; }
+
 /// The same case went the same way: the frames byte for byte, the table but for the times it took.
 inline void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
     EXPECT_EQ(lasting_columns(a), lasting_columns(b));

@@ -10,15 +10,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::size_t opening = 0;  // what the whole run said before its first step
+
 /// The case, run without a stop: the folder "whole".
 void run_whole(const TemporaryFolder& folder, const std::string& text) {
     write(folder.path / "a.toml", text);
-    ASSERT_EQ(kropla_program(folder, "run a.toml --out whole").code, 0);
+    const Outcome it = kropla_program(folder, "run a.toml --out whole");
+    ASSERT_EQ(it.code, 0);
+    opening = opening_of(it.out);
 }
 
 /// Begins the case in the folder "d" and sends the signal in the step `at`.
 Outcome stopped(const TemporaryFolder& folder, int at, int signal) {
-    HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, at - 1);
+    HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, at - 1, opening);
     EXPECT_TRUE(program.reaches("d", at));
     program.signal(signal);
     return program.finish();
@@ -89,6 +93,7 @@ TEST(Resume, OfAFinishedRunChangesNothing) {
     fs::copy(folder.path / "whole", folder.path / "d", fs::copy_options::recursive);
     const Outcome it = kropla_program(folder, "run a.toml --out d --resume");
     EXPECT_EQ(it.code, 0) << it.err;
+    EXPECT_EQ(it.out, "d: the run is finished: step 2 at 400 us; nothing was done. With a later time.end it goes on\n");
     expect_same_run(folder.path / "d", folder.path / "whole");
     for (const char* name : {"steps.csv", "checkpoint.h5"})
         EXPECT_EQ(contents(folder.path / "d" / name), contents(folder.path / "whole" / name)) << name;
@@ -97,11 +102,53 @@ TEST(Resume, OfAFinishedRunChangesNothing) {
 TEST(Resume, RefusesAnotherCase) {
     const TemporaryFolder folder;
     run_whole(folder, short_case(2));
-    write(folder.path / "b.toml", short_case(3));
-    const Outcome it = kropla_program(folder, "run b.toml --out whole --resume");
-    EXPECT_EQ(it.code, 2);
-    expect_one_line(it.err, "whole: the run in it is of another case than the one given");
-    EXPECT_EQ(read_table(folder.path / "whole/steps.csv").rows, 2u);
+    const std::pair<std::string, std::string> others[] = {
+        {replaced(short_case(2), "surface = 4e-4", "surface = 3e-4"),
+         "b.toml: size.surface: is 0.0003 here, but 0.0004 in the run that whole holds"},
+        {replaced(short_case(2), "-0.8*t", "-0.9*t"), "b.toml: body[0].motion.z: is -0.9*t here, but -0.8*t in the run"},
+        {short_case(2) + "[random]\nseed = 3\n", "b.toml: random.seed: is 3 here, but 1 in the run"},
+        {replaced(short_case(2), "steps = 2", "steps = 4"),
+         "b.toml: time.steps: 4 make steps of 0.0001 s, those of the run so far are of 0.0002 s; 2 does"},
+        {replaced(short_case(2), "end   = 4e-4", "end   = 2e-4"),
+         "b.toml: time.end: 0.0002 is past already: the run has reached 0.0004; a later one does"}};
+    for (const auto& [text, complaint] : others) {
+        write(folder.path / "b.toml", text);
+        const Outcome it = kropla_program(folder, "run b.toml --out whole --resume");
+        EXPECT_EQ(it.code, 2);
+        expect_one_line(it.err, complaint);
+        EXPECT_EQ(read_table(folder.path / "whole/steps.csv").rows, 2u);
+    }
+}
+
+// A longer run of steps of the same length is the same as one that was longer from the beginning: with the count of
+// steps given anew, and with the count left as it was; twice, as the case given then is remembered.
+TEST(Resume, GoesOnToALaterEnd) {
+    const TemporaryFolder folder;
+    run_whole(folder, short_case(4));
+    write(folder.path / "b.toml", short_case(2));
+    const std::string longer = replaced(short_case(2), "end   = 4e-4", "end   = 8e-4");
+    for (const std::string& text : {short_case(4), longer}) {
+        ASSERT_EQ(kropla_program(folder, "run b.toml --out d").code, 0);
+        write(folder.path / "c.toml", text);
+        const Outcome it = kropla_program(folder, "run c.toml --out d --resume");
+        EXPECT_EQ(it.code, 0) << it.err;
+        expect_same_run(folder.path / "d", folder.path / "whole");
+        EXPECT_EQ(kropla_program(folder, "run c.toml --out d --resume").code, 0);
+        fs::remove_all(folder.path / "d");
+    }
+}
+
+TEST(Resume, TakesTheSameCaseInOtherWords) {
+    const TemporaryFolder folder;
+    run_whole(folder, short_case(4));
+    write(folder.path / "b.toml", short_case(2));
+    ASSERT_EQ(kropla_program(folder, "run b.toml --out d").code, 0);
+    write(folder.path / "c.toml", replaced(replaced(replaced(short_case(4, 3), "\"-0.8*t\"", "\" -0.8 * t\""),
+                                                    "surface = 4e-4", "surface = 0.0004"),
+                                           "far     = 8e-4", "far = 8.0e-04"));
+    EXPECT_EQ(kropla_program(folder, "run c.toml --out d --resume").code, 0);
+    EXPECT_EQ(lasting_columns(folder.path / "d"), lasting_columns(folder.path / "whole"));
+    EXPECT_EQ(frames(folder.path / "d").size(), 5u);  // 0, 1, 2; from here on each third, and the last
 }
 
 TEST(Resume, RefusesADamagedCheckpoint) {

@@ -47,7 +47,12 @@ TEST(Run, LeavesFramesTableCheckpointAndReport) {
     const Outcome it = kropla_program(folder, "run a.toml --out d");
     ASSERT_EQ(it.code, 0) << it.err;
     EXPECT_EQ(it.err, "");
-    EXPECT_EQ(std::ranges::count(it.out, '\n'), 4) << it.out;  // a plain line per step
+    EXPECT_TRUE(it.out.starts_with("a.toml: about ")) << it.out;
+    EXPECT_NE(it.out.find(" tets, 4 steps to 800 us, "), std::string::npos) << it.out;
+    const std::string steps_said = it.out.substr(opening_of(it.out));
+    EXPECT_EQ(std::ranges::count(steps_said, '\n'), 5) << it.out;  // a plain line per step, and the last
+    EXPECT_NE(it.out.find("\ndone: 4 steps to 800 us in 0:"), std::string::npos) << it.out;
+    EXPECT_TRUE(it.out.ends_with("; see d/report.html, or paraview d/frames.pvd\n")) << it.out;
     EXPECT_EQ(it.out.find('\r'), std::string::npos);
 
     const fs::path run = folder.path / "d";
@@ -252,14 +257,15 @@ TEST(Run, EndsWithFiveIfAFrameCannotBeWritten) {
 TEST(Run, EndsWithFiveIfTheDiskIsFull) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(3));
-    HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, 1);
+    const Outcome before = kropla_program(folder, "run a.toml --out whole");
+    ASSERT_EQ(before.code, 0);
+    HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, 1, opening_of(before.out));
     ASSERT_TRUE(program.reaches("d", 1));
     program.let_files_grow_to(25000);  // [bytes] enough for the table and not for a frame
     const Outcome it = program.finish();
     EXPECT_EQ(it.code, 5);
     expect_one_line(it.err, "cannot be written");
     EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
-    ASSERT_EQ(kropla_program(folder, "run a.toml --out whole").code, 0);
     expect_same_run(folder.path / "d", folder.path / "whole");
 }
 

@@ -101,5 +101,16 @@ TEST(Page, NamesTheFileThatIsMissingOrBroken) {
     EXPECT_THROW(write_report(dir), FileError);
 }
 
+TEST(Page, IsNotWrittenIfTheWatchSaysStop) {
+    const auto dir = test_folder("stopped");
+    write_tiny_run(dir);
+    write_file(dir / "report.html", "the one before");
+    Watch watch;
+    watch.stop = true;
+    EXPECT_THROW(write_report(dir, &watch), Interrupted);
+    EXPECT_EQ(read_file(dir / "report.html"), "the one before");
+    std::filesystem::remove_all(dir);
+}
+
 }  // namespace
 }  // namespace kropla
