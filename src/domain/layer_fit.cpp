@@ -52,19 +52,20 @@ std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t
     constexpr std::array walls = {"the wall x min", "the wall x max", "the wall y min",
                                   "the wall y max", "the wall z min", "the wall z max"};
     const double own = thickness(*at.layers[body]);
+    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], surface_size(at, i)); };
     const Bounds held = bounds(at.shapes[body]);
     std::vector<Nearby> found;
     for (int wall = 0; wall < 6; ++wall) {
         const int axis = wall / 2;
         const double gap =
             wall % 2 == 0 ? held.min[axis] - at.box.min[axis] : at.box.max[axis] - held.max[axis];
-        found.push_back({gap, share_of_gap * gap, own, walls[static_cast<std::size_t>(wall)]});
+        found.push_back({gap, share_of_gap * (gap - out(body)), own, walls[static_cast<std::size_t>(wall)]});
     }
     for (std::size_t other = 0; other < at.shapes.size(); ++other) {
         if (other == body) continue;
         const double gap = gap_between(at.shapes[body], at.shapes[other]);
         const LayerOptions* theirs = layer_at_side(at, other, false);
-        found.push_back({gap, gap * (theirs ? share_between_layers : share_of_gap),
+        found.push_back({gap, (gap - out(body) - out(other)) * (theirs ? share_between_layers : share_of_gap),
                          own + (theirs ? thickness(*theirs) : 0),
                          "body \"" + domain.bodies[other].name + "\""});
     }

@@ -35,16 +35,21 @@ const LayerOptions* layer_at_side(const Snapshot& at, std::size_t body, bool ins
 }
 
 Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x) {
+    // Of the gap, there is as much less room as the polyhedra stand out into it.
+    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], surface_size(at, i)); };
+    const double own = out(body);
     Gap least{infinity, infinity, -1, body};
     for (int axis = 0; axis < 3; ++axis)
         for (int side = 0; side < 2; ++side) {
             const double gap = side == 0 ? x[axis] - at.box.min[axis] : at.box.max[axis] - x[axis];
-            if (share_of_gap * gap < least.room) least = {gap, share_of_gap * gap, 2 * axis + side, body};
+            const double room = share_of_gap * (gap - own);
+            if (room < least.room) least = {gap, room, 2 * axis + side, body};
         }
     for (std::size_t other = 0; other < at.shapes.size(); ++other) {
         if (other == body) continue;
         const double gap = signed_distance(at.shapes[other], x);
-        const double room = gap * (layer_at_side(at, other, false) ? share_between_layers : share_of_gap);
+        const double share = layer_at_side(at, other, false) ? share_between_layers : share_of_gap;
+        const double room = share * (gap - own - out(other));
         if (room < least.room) least = {gap, room, -1, other};
     }
     return least;

@@ -103,8 +103,9 @@ def comes_within(scene, body, times, wanted):
 
 def place(rng, scene, body, times):
     """Puts the body somewhere beside the others; half of them so that it passes one at a distance drawn."""
-    wanted = log_uniform(rng, LEAST_GAP + 0.03, 1.0) if rng.random() < 0.6 else rng.uniform(1, 6)
     target = rng.choice(scene.bodies)
+    least = LEAST_GAP + scene.stands_out(target) + scene.stands_out(body) + 0.03
+    wanted = log_uniform(rng, least, 1.0) if rng.random() < 0.6 else rng.uniform(1, 6)
     t, way = rng.random(), direction(rng)
     meet = minus(target.at(t).centre, body.displacement(t))
     reach = max(target.shape.axes) + max(body.shape.axes)
@@ -137,7 +138,8 @@ def draw_box(rng, scene, times):
                 half = shape.half_extent(axis)
                 low[axis] = min(low[axis], shape.centre[axis] - half)
                 high[axis] = max(high[axis], shape.centre[axis] + half)
-    room = [rng.choice((log_uniform(rng, LEAST_GAP + 0.05, 3), rng.uniform(1, 12))) for _ in range(6)]
+    least = scene.needed_gaps(LEAST_GAP)[0] + 0.05
+    room = [rng.choice((log_uniform(rng, least, 3), rng.uniform(1, 12))) for _ in range(6)]
     low = [low[axis] - room[axis] for axis in range(3)]
     high = [high[axis] + room[axis + 3] for axis in range(3)]
     if rng.random() < 0.33:
@@ -187,7 +189,8 @@ def draw_scene(rng, steps):
 
 def is_legal(scene):
     wall, pair = least_gaps(scene, looks_per_step=2 * LOOKS)
-    return min(wall[0], pair[0]) >= LEAST_GAP
+    to_wall, between = scene.needed_gaps(LEAST_GAP)
+    return wall[0] >= to_wall and pair[0] >= between
 
 
 def numbers(values):

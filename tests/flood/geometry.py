@@ -156,6 +156,15 @@ class Scene:
         layer = body.layer
         return min(self.surface, 15 * layer.first_height * layer.growth ** (layer.count - 1))
 
+    def stands_out(self, body):
+        """How far at most the triangulated surface stands out of the shape, which gives it the body's volume [m]."""
+        return 0.15 * self.surface_size(body) ** 2 / body.shape.curvature_radius()
+
+    def needed_gaps(self, least_gap):
+        """Those to a wall and between two bodies that surely do, `least_gap` sizes between surfaces [m]."""
+        out = sorted((self.stands_out(body) for body in self.bodies), reverse=True) + [0.0, 0.0]
+        return least_gap * self.surface + out[0], least_gap * self.surface + out[0] + out[1]
+
     def wall_gap(self, shape):
         """The least one; negative outside of the box."""
         gaps = []

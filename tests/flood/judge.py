@@ -11,7 +11,7 @@ import vtu
 from geometry import least_gaps
 
 LEAST_JACOBIAN = 0.1  # [-] scaled, of a prism's corners: the floor of prisms
-LEAST_GAP = 0.25  # [surface sizes] that bodies must keep
+LEAST_GAP = 0.25  # [surface sizes] that bodies' triangulated surfaces must keep
 TRANSFER_ERROR = 1e-12  # [-]
 CONSERVED = 1e-10  # [-] of an insulated box's energy
 SUPPLIED = 1e-8  # [-] of the energy, where heat comes in
@@ -143,7 +143,8 @@ def reason_of(case, said):
     if "layer" in said:
         return "layer", any(too_thick(scene, body, min(wall[0], pair[0])) for body in scene.bodies if body.layer)
     if re.search(r"apart|overlap|into each other|from the wall|touches|gap|comes? within|too close", said):
-        return "gap", min(wall[0], pair[0]) < LEAST_GAP * scene.surface
+        to_wall, between = scene.needed_gaps(LEAST_GAP)
+        return "gap", wall[0] < to_wall or pair[0] < between
     if re.search(r"\bfar\b|thin", said):
         return "thin box", min(h - l for h, l in zip(scene.high, scene.low)) < scene.far
     return "other", False

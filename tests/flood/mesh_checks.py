@@ -217,9 +217,12 @@ def look_at(frame, scene, t):
 
 
 def check_surfaces(frame, scene, t, figures):
-    """The vertices of each body's surface stand where its motion takes it."""
+    """The vertices of each body's surface stand where its motion takes it, so that it has its volume."""
     for number, body in enumerate(scene.bodies, 1):
         shape = body.at(t)
+        part = figures.volumes.get(number, math.nan) / shape.volume()
+        if not abs(part - 1) <= rounding(scene):
+            figures.faults.append(f"body {number} has {part} of its volume")
         allowed = 0.5 * scene.surface_size(body)  # the rise of a facet of that size is below a quarter of it
         for v in figures.surfaces.get(number, ()):
             off = shape.distance(frame.points[v])
