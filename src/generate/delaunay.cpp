@@ -107,6 +107,7 @@ Triangulation triangulation_of(const std::vector<Cell>& cells) {
 
 Triangulation triangulate_in_order(std::span<const Vec3> points, std::span<const Vertex> order,
                                    const Watch* watch) {
+    heed(watch);
     std::vector<Vertex> sequence(order.begin(), order.end());
     if (!bring_tet_to_front(points, sequence)) return {};
     Kernel k;

@@ -93,7 +93,7 @@ TEST(BadMesh, ByEnergyAnInvertedCellIsNoGain) {
 
 TEST(BadMesh, ImprovementEndsAndMendsWhatItCan) {
     int before = 0, after = 0;
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Mesh mesh = tangled(seed, seed % 2 == 0 ? 2 : 8);
         const int turned = count_turned(mesh);

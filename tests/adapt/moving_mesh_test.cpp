@@ -197,31 +197,6 @@ TEST(MovingMesh, RefusesAGiantStepAndSaysWhy) {
     EXPECT_EQ(moving.refine().cells_replaced, 0);  // the trouble is over
 }
 
-// Here nothing repairs what an operator for the sake of size has made as bad as it may.
-TEST(MovingMesh, WhatPassesTheFloorAndStaysThereIsTakenBack) {
-    const Domain domain = crossing_sphere();
-    AdaptOptions careless{.good_enough = 7.2, .passing = 1e6, .floor = 7, .clusters = false, .largest_ring = 0, .whole_region = false};
-    AdaptOptions careful = careless;
-    careful.passing = careful.floor;
-    int redone = 0;
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        SCOPED_TRACE("seed " + std::to_string(seed));
-        MovingMesh moving(domain, improved_mesh(domain, seed), 0, careless);
-        for (int i = 0; i < 10; ++i) {
-            MovingMesh other(domain, moving.reference(), moving.time(), careful);
-            ASSERT_GT(step(moving, 1.0 / 15), 0);
-            EXPECT_LE(worst_of(moving.reference()), careless.floor) << "step " << i;
-            EXPECT_EQ(verify(moving.reference()), "") << "step " << i;
-            if (!moving.statistics().redone) continue;
-            ++redone;
-            step(other, 1.0 / 15);
-            EXPECT_FALSE(other.statistics().redone);
-            EXPECT_EQ(moving.reference(), other.reference()) << "step " << i;
-        }
-    }
-    EXPECT_GE(redone, 1);
-}
-
 TEST(MovingMesh, SameInputSameMeshes) {
     const Domain domain = crossing_sphere();
     const auto run = [&] {
@@ -238,6 +213,36 @@ bool attempt(MovingMesh& moving, double t) {
     moving.move_boundary(t);
     moving.optimise();
     return moving.refusal().has_value();
+}
+
+// Here nothing repairs what an operator for the sake of size has made as bad as it may.
+TEST(MovingMesh, WhatPassesTheFloorAndStaysThereIsTakenBack) {
+    const Domain domain = crossing_sphere();
+    const AdaptOptions careless{.good_enough = 7.2, .passing = 1e6, .floor = 7, .clusters = false, .largest_ring = 0,
+                                .whole_region = false};
+    AdaptOptions careful = careless;
+    careful.passing = careful.floor;
+    int redone = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        MovingMesh moving(domain, improved_mesh(domain, seed), 0, careless);
+        for (int i = 1; i <= 15; ++i) {
+            MovingMesh other(domain, moving.reference(), moving.time(), careful);
+            moving.begin_step();
+            if (attempt(moving, i / 15.0)) break;  // with so few operators
+            moving.accept();
+            EXPECT_LE(worst_of(moving.reference()), careless.floor) << "step " << i;
+            EXPECT_EQ(verify(moving.reference()), "") << "step " << i;
+            if (!moving.statistics().redone) continue;
+            ++redone;
+            other.begin_step();
+            EXPECT_FALSE(attempt(other, i / 15.0));
+            other.accept();
+            EXPECT_FALSE(other.statistics().redone);
+            EXPECT_EQ(moving.reference(), other.reference()) << "step " << i;
+        }
+    }
+    EXPECT_GE(redone, 1);
 }
 
 void expect_three_equal_meshes(const MovingMesh& moving) {
