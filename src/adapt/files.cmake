@@ -6,6 +6,7 @@ list(APPEND KROPLA_MESH_FILES
     adapt/smooth.cpp
     adapt/swap.cpp
     adapt/refine.cpp
+    adapt/refusal.cpp
     adapt/improve.cpp
     adapt/remesh.cpp
     adapt/way.cpp

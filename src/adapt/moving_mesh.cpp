@@ -55,13 +55,6 @@ double worst_aspect_ratio_of(const Mesh& mesh, std::span<const Tet> cells) {
     return worst;
 }
 
-std::string describe(const Mesh& mesh, Tet t, const char* what) {
-    const Vec3 x = centroid(mesh, t);
-    char text[200];
-    std::snprintf(text, sizeof text, "cell %d at (%.5g, %.5g, %.5g) m %s", t.value, x.x, x.y, x.z, what);
-    return text;
-}
-
 std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, const Snapshot& at_time) {
     std::vector<Tet> cells;
     for (Tet t : mesh.tets.indices()) {
@@ -155,8 +148,7 @@ void MovingMesh::move_in_legs() {
         const double share = report.arrived ? 1 : share_of_safe * report.fraction;
         const double next = report.arrived ? target_time_ : here + share * (target_time_ - here);
         if (!report.arrived) {
-            stuck_ = Refusal{describe(current_, report.limiting, "keeps the bodies from arriving"), report.limiting,
-                             here - time_};
+            stuck_ = refused(report.limiting, "keeps the bodies from arriving", here - time_);
             if (share < least_leg) return;
             if (!kropla::move_boundary(current_, domain_, bodies_, here, next, zone_).arrived) return;
         }
@@ -175,7 +167,7 @@ void MovingMesh::note_turned_over(double reached) {
     const auto is_turned = [&](Tet t) { return !std::isfinite(zone_.ratio[t]); };
     const auto cell = std::ranges::find_if(zone_.cells, is_turned);
     const Tet limiting = cell == zone_.cells.end() ? zone_.cells.front() : *cell;
-    stuck_ = Refusal{describe(current_, limiting, "would be turned over"), limiting, reached - time_};
+    stuck_ = refused(limiting, "would be turned over", reached - time_);
 }
 
 /// Returns false if a cell is turned over.
@@ -210,68 +202,69 @@ std::optional<Refusal> MovingMesh::turned_too_far() const {
         const double kept = volume_kept_turning(shape_at(body, time_), shape_at(body, target_time_));
         if (kept >= least_volume_kept) continue;
         const double turn = std::acos(std::max(-1.0, 2 * kept - 1)), most = std::acos(2 * least_volume_kept - 1);
-        char text[240];
-        std::snprintf(text, sizeof text, "body \"%s\" would turn by %.3g degrees in one step, t = %.6g to %.6g s; at "
-                      "most %.3g are possible", body.name.c_str(), turn * 180 / std::numbers::pi, time_, target_time_,
-                      most * 180 / std::numbers::pi);
-        return Refusal{text, Tet{}, most / turn * (target_time_ - time_)};
+        const double advised_dt = most / turn * (target_time_ - time_);
+        const auto degrees = [](double angle) { return written(angle * 180 / std::numbers::pi); };
+        return Refusal{.why = "at t = " + time_words(target_time_) + ' ' + named(body) + " would have turned by " +
+                              degrees(turn) + " degrees in one step, at most " + degrees(most) +
+                              " are possible: a step of " + time_words(advised_dt) + " would do",
+                       .limiting = {},
+                       .advised_dt = advised_dt,
+                       .place = shape_at(body, target_time_).centre,
+                       .time = target_time_};
     }
     return std::nullopt;
 }
 
 /// A cell that does not keep its volume all along its way, though it does in the end.
 std::optional<Refusal> MovingMesh::turned_on_its_way() const {
-    const auto refusal = [&](Tet t, double fraction) {
-        return Refusal{describe(before_, t, "would be turned inside out on its way"), t,
-                       fraction * (target_time_ - time_)};
-    };
-    if (!way_.arrived) return refusal(way_.limiting, way_.fraction);
+    constexpr const char* fault = "would be turned inside out on its way";
+    const double dt = target_time_ - time_;
+    if (!way_.arrived) return refused(way_.limiting, fault, way_.fraction * dt);
     for (Tet t : at_inner_shells_)
         if (const double safe = safe_fraction(before_, current_, {&t, 1}, least_volume_kept); safe < 1)
-            return refusal(t, safe);
+            return refused(t, fault, safe * dt);
     for (const Prism& prism : all_prisms(current_)) {
         const auto from = prism_corners(before_, prism);
         const double safe = safe_fraction(from, prism_corners(current_, prism), least_volume_kept);
         if (safe == 1) continue;
-        char text[160];
-        std::snprintf(text, sizeof text, "a prism at (%.5g, %.5g, %.5g) m would be turned inside out on its way",
-                      from[0].x, from[0].y, from[0].z);
-        return Refusal{text, Tet{}, safe * (target_time_ - time_)};
+        return explained(domain_, {fault, Tet{}, from[0], time_, target_time_, options_.floor}, safe * dt);
     }
     return std::nullopt;
+}
+
+Refusal MovingMesh::refused(Tet cell, const std::string& fault, double advised_dt) const {
+    return explained(domain_, {fault, cell, centroid(current_, cell), time_, target_time_, options_.floor}, advised_dt);
 }
 
 std::optional<Refusal> MovingMesh::narrow_gap() const {
     const auto gap = narrowest_gap(current_, snapshot(domain_, target_time_));
     if (!gap || gap->distance >= gap->allowed) return std::nullopt;
-    char text[200];
-    std::snprintf(text, sizeof text, "body \"%s\" would come within %.3g m of %s at (%.5g, %.5g, %.5g) m, t = %.6g s; "
-                  "its layer needs %.3g m", domain_.bodies[gap->body].name.c_str(), gap->distance,
-                  gap->wall >= 0 ? "a wall" : "another body", gap->place.x, gap->place.y, gap->place.z, target_time_,
-                  gap->allowed);
-    return Refusal{text, Tet{}, 0};
+    const Approach near{gap->body, gap->wall, gap->other, std::max(0.0, gap->distance), target_time_};
+    const std::string advice = near.gap > 0 ? "; at most " + metres(rounded_down(near.gap)) + " would do" : "";
+    return Refusal{"at t = " + time_words(target_time_) + ' ' + in_words(domain_, near) + " at " +
+                       place_words(gap->place) + ", less than layer.min_gap = " + metres(gap->allowed) + advice,
+                   Tet{}, time_until_gap(domain_, near, time_, target_time_, gap->allowed), gap->place,
+                   target_time_, near};
 }
 
 std::optional<Refusal> MovingMesh::worst_cell() const {
-    Refusal refusal;
+    Tet limiting;
     double worst = options_.floor;
     const auto look_at = [&](Tet t, double ratio) {
         if (ratio <= worst) return;
         worst = ratio;
-        refusal.limiting = t;
+        limiting = t;
     };
     for (Tet t : zone_.cells) look_at(t, zone_.ratio[t]);
     for (Tet t : at_inner_shells_) look_at(t, aspect_ratio(current_, t));
     for (Tet t : refined_)
         if (alive(current_, t)) look_at(t, aspect_ratio(current_, t));
-    if (!refusal.limiting.exists()) return std::nullopt;
-    char what[80];
-    std::snprintf(what, sizeof what, "would have R/r %.4g, above the limit %.4g", worst, options_.floor);
-    const double was = aspect_ratio(before_, refusal.limiting);
+    if (!limiting.exists()) return std::nullopt;
+    const double was = aspect_ratio(before_, limiting);
     const double share = was < options_.floor ? (options_.floor - was) / (worst - was) : 0;
-    refusal.why = describe(current_, refusal.limiting, what);
-    refusal.advised_dt = share * (target_time_ - time_);
-    return refusal;
+    char fault[80];
+    std::snprintf(fault, sizeof fault, "would have R/r %.4g, limit %.4g", worst, options_.floor);
+    return refused(limiting, fault, share * (target_time_ - time_));
 }
 
 std::optional<Refusal> MovingMesh::squeezed_prism() const {
@@ -279,10 +272,13 @@ std::optional<Refusal> MovingMesh::squeezed_prism() const {
         const auto corners = prism_corners(current_, prism);
         const double jacobian = scaled_corner_jacobian(corners);
         if (jacobian >= least_jacobian) continue;
-        char text[160];
-        std::snprintf(text, sizeof text, "a prism at (%.5g, %.5g, %.5g) m would have a scaled Jacobian of %.3g, below %.3g",
-                      corners[0].x, corners[0].y, corners[0].z, jacobian, least_jacobian);
-        return Refusal{text, Tet{}, 0};
+        char fault[80];
+        std::snprintf(fault, sizeof fault, "would have a scaled Jacobian of %.3g, limit %.3g", jacobian,
+                      least_jacobian);
+        const double was = scaled_corner_jacobian(prism_corners(before_, prism));
+        const double share = was > least_jacobian ? (was - least_jacobian) / (was - jacobian) : 0;
+        return explained(domain_, {fault, Tet{}, corners[0], time_, target_time_, options_.floor},
+                         share * (target_time_ - time_));
     }
     return std::nullopt;
 }

@@ -1,15 +1,9 @@
 #pragma once
 
+#include "adapt/refusal.h"
 #include "adapt/zone.h"
 
 namespace kropla {
-
-/// Why a step is refused: what is wrong, where, and what would help.
-struct Refusal {
-    std::string why;       // one line: the limiting cell, its place, its aspect ratio
-    Tet limiting;          // in the current mesh; none if it is not a tet that stops the step
-    double advised_dt = 0; // [s] that would have been safe
-};
 
 /// What a step did to the mesh, for reports.
 struct StepStatistics {
@@ -71,6 +65,7 @@ public:
 
 private:
     [[nodiscard]] std::optional<Refusal> what_limits() const;
+    [[nodiscard]] Refusal refused(Tet cell, const std::string& fault, double advised_dt) const;
     [[nodiscard]] std::optional<Refusal> narrow_gap() const;
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;

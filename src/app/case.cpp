@@ -21,7 +21,7 @@ constexpr double least_floor = 5;  // [-] R/r; what is better is good enough for
 
 Box read_box(const CaseTable& table) {
     table.allow({"min", "max"});
-    const Box box{table.vec3("min"), table.vec3("max")};
+    const Box box{table.place("min"), table.place("max")};
     for (int axis = 0; axis < 3; ++axis) {
         if (box.min[axis] < box.max[axis]) continue;
         table.refuse("max", fmt::format("must be above min, got {} = {} where min has {}", "xyz"[axis],
@@ -30,11 +30,23 @@ Box read_box(const CaseTable& table) {
     return box;
 }
 
-SizeField read_size(const CaseTable& table) {
+/// Throws if at the box's coordinates doubles are too coarse for the size.
+void check_resolved(const CaseTable& table, double surface, const Box& box) {
+    double farthest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::abs(box.min[axis]), std::abs(box.max[axis])});
+    if (surface >= least_resolved * farthest) return;
+    table.refuse_value("surface", fmt::format("must be at least {:.1e} m where coordinates go up to {:.3g} m, for the "
+                                              "sake of rounding (a box nearer to the origin allows less)",
+                                              least_resolved * farthest, farthest));
+}
+
+SizeField read_size(const CaseTable& table, const Box& box) {
     table.allow({"surface", "growth", "far"});
     SizeField size;
-    size.surface = table.positive("surface");
-    size.far = table.positive("far");
+    size.surface = table.length("surface");
+    check_resolved(table, size.surface, box);
+    size.far = table.length("far");
     if (table.has("growth")) size.growth = table.number("growth");
     if (!(size.growth >= 0 && size.growth <= 1)) table.refuse_value("growth", "must be from 0 to 1");
     if (size.far < size.surface) {
@@ -72,32 +84,6 @@ RandomSeed read_random(const CaseTable& table) {
                              : RandomSeed{};
 }
 
-/// The domain with all sizes taken `factor` times, to two digits.
-Domain coarsened(const Domain& domain, double factor) {
-    const auto two_digits = [](double x) { return std::stod(fmt::format("{:.1e}", x)); };
-    Domain coarser = domain;
-    coarser.size.surface = two_digits(factor * domain.size.surface);
-    coarser.size.far = two_digits(factor * domain.size.far);
-    return coarser;
-}
-
-/// Throws if the size asks for too many tets, with a coarser one that would do.
-void check_count(const CaseTable& file, const Domain& domain) {
-    const double tets = estimate_tets(domain);
-    if (tets <= most_tets) return;
-    const Vec3 span = domain.box.max - domain.box.min;
-    double too_fine = 0, will_do = std::log(std::max({span.x, span.y, span.z}) / domain.size.surface);
-    for (int halving = 0; halving < 24; ++halving) {
-        const double middle = (too_fine + will_do) / 2;
-        (estimate_tets(coarsened(domain, std::exp(middle))) <= most_tets ? will_do : too_fine) = middle;
-    }
-    const SizeField size = coarsened(domain, std::exp(will_do)).size;
-    file.refuse(
-        "size",
-        fmt::format("asks for about {:.1e} tets, more than {:.0e}; surface = {} and far = {} would do", tets,
-                    most_tets, size.surface, size.far));
-}
-
 toml::table parse(std::string_view text, const std::string& name) {
     try {
         return toml::parse(text, name);
@@ -116,13 +102,12 @@ Case parse_case(std::string_view text, const std::string& name) {
     Case it;
     it.domain.box = read_box(file.table("domain"));
     read_bodies(file, it);
-    it.domain.size = read_size(file.table("size"));
+    it.domain.size = read_size(file.table("size"), it.domain.box);
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
     if (file.has("output")) it.output = read_output(file.table("output"));
     if (file.has("random")) it.random = read_random(file.table("random"));
-    check_count(file, it.domain);
     return it;
 }
 

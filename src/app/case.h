@@ -62,7 +62,7 @@ inline constexpr double most_tets = 2e7;
 
 /// Reads a case file (TOML; its keys are explained in docs and in what `kropla new` writes).
 /// Throws FileError if the file cannot be read, and CaseError, naming file, key, line, value and what would
-/// be right, if anything in it is wrong, missing or unknown, or if it asks for more than `most_tets`.
+/// be right, if anything in it is wrong, missing or unknown. Whether bodies and sizes fit is asked by `foresee`.
 [[nodiscard]] Case read_case(const std::filesystem::path& path);
 /// As above, from the text itself; `name` stands for the file in refusals.
 [[nodiscard]] Case parse_case(std::string_view text, const std::string& name);

@@ -26,15 +26,13 @@ std::string read_name(const CaseTable& table, const std::vector<Body>& before) {
 Shape read_sphere(const CaseTable& table) {
     if (table.has("axes")) table.refuse("axes", "a sphere has a radius instead");
     if (table.has("rotation")) table.refuse("rotation", "a sphere has none");
-    const double radius = table.positive("radius");
-    return {table.vec3("centre"), {radius, radius, radius}, {}};
+    const double radius = table.length("radius");
+    return {table.place("centre"), {radius, radius, radius}, {}};
 }
 
 Shape read_ellipsoid(const CaseTable& table, WrittenBody& written) {
     if (table.has("radius")) table.refuse("radius", "an ellipsoid has axes = [a, b, c] instead");
-    const Vec3 axes = table.vec3("axes");
-    if (!(axes.x > 0 && axes.y > 0 && axes.z > 0)) table.refuse_value("axes", "must all be positive");
-    Shape shape{table.vec3("centre"), axes, {}};
+    Shape shape{table.place("centre"), table.lengths("axes"), {}};
     if (table.has("rotation")) {
         const std::vector<double> r = table.numbers("rotation", 4, "[axis x, y, z, degrees]");
         const Vec3 axis{r[0], r[1], r[2]};
@@ -61,7 +59,7 @@ struct Path {
     std::vector<Expression> axis;
 };
 
-/// Not a number where the axis is zero, for check_paths to find.
+/// Not a number where the axis is zero, for look_at_paths to find.
 Rotation turn(const Path& path, double t) {
     constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
     if (!path.angle) return {};
@@ -135,7 +133,7 @@ LayerOptions read_layer(const CaseTable& table) {
     if (table.has("count")) layer.count = static_cast<int>(table.integer("count", 1, most_prisms));
     if (table.has("first_height")) layer.first_height = table.number("first_height");
     if (table.has("growth")) layer.growth = table.positive("growth");
-    if (table.has("min_gap")) layer.min_gap = table.positive("min_gap");
+    if (table.has("min_gap")) layer.min_gap = table.length("min_gap");
     if (table.has("side")) {
         const auto side = std::ranges::find(side_names, table.text("side"));
         if (side == side_names.end()) table.refuse_value("side", "must be \"outside\", \"inside\" or \"both\"");

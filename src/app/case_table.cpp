@@ -12,6 +12,8 @@
 namespace kropla {
 namespace {
 
+bool is_length(double value) { return value >= least_length && value <= most_length; }
+
 /// A value as a refusal shows it.
 std::string shown(const toml::node& node) {
     if (const auto text = node.value_exact<std::string>()) return toml_text(*text);
@@ -99,8 +101,24 @@ std::vector<double> CaseTable::numbers(std::string_view key, std::size_t count,
     return values;
 }
 
-Vec3 CaseTable::vec3(std::string_view key) const {
+double CaseTable::length(std::string_view key) const {
+    const double value = positive(key);
+    if (!is_length(value)) refuse_value(key, fmt::format("must be from {:g} to {:g} m", least_length, most_length));
+    return value;
+}
+
+Vec3 CaseTable::lengths(std::string_view key) const {
     const std::vector<double> v = numbers(key, 3, "[x, y, z]");
+    if (!std::ranges::all_of(v, [](double x) { return x > 0; })) refuse_value(key, "must all be positive");
+    if (!std::ranges::all_of(v, is_length))
+        refuse_value(key, fmt::format("must all be from {:g} to {:g} m", least_length, most_length));
+    return {v[0], v[1], v[2]};
+}
+
+Vec3 CaseTable::place(std::string_view key) const {
+    const std::vector<double> v = numbers(key, 3, "[x, y, z]");
+    if (!std::ranges::all_of(v, [](double x) { return std::abs(x) <= most_length; }))
+        refuse_value(key, fmt::format("must be within {:g} m of the origin", most_length));
     return {v[0], v[1], v[2]};
 }
 

@@ -16,6 +16,11 @@
 
 namespace kropla {
 
+/// Lengths of a case [m]: the product of 17 of them is within the range of doubles.
+inline constexpr double least_length = 1e-18, most_length = 1e15;
+/// The surface size by the largest coordinate: doubles of 16 digits then place a vertex to 1e-7 of its cell.
+inline constexpr double least_resolved = 1e-9;
+
 /// A number or an expression of the case file, and how it stands there: `300`, or `"1e4*sin(t)"` with its
 /// quotes.
 struct Formula {
@@ -40,11 +45,15 @@ public:
     /// A finite number.
     [[nodiscard]] double number(std::string_view key) const;
     [[nodiscard]] double positive(std::string_view key) const;
+    /// [m], from `least_length` to `most_length`.
+    [[nodiscard]] double length(std::string_view key) const;
+    /// Three of them.
+    [[nodiscard]] Vec3 lengths(std::string_view key) const;
     /// From `least` to `most`.
     [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t least, std::int64_t most) const;
     [[nodiscard]] std::string text(std::string_view key) const;
-    /// Three finite numbers.
-    [[nodiscard]] Vec3 vec3(std::string_view key) const;
+    /// Three coordinates [m], up to `most_length` on either side of 0.
+    [[nodiscard]] Vec3 place(std::string_view key) const;
     /// As many finite numbers; `meaning` names them in a refusal.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count,
                                               std::string_view meaning) const;

@@ -5,6 +5,7 @@
 #include "app/check.h"
 #include "app/check_files.h"
 #include "app/command_line.h"
+#include "app/foresight.h"
 #include "app/initial_mesh.h"
 #include "app/interrupt.h"
 #include "app/new_case.h"
@@ -40,7 +41,7 @@ Mesh mesh_of(const Case& it, Watch& watch) {
     if (progress.on_terminal())  // else what is printed is the result alone
         watch.progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
     try {
-        check_all_paths(it, &watch);
+        warn(foresee(it, &watch));
         return initial_mesh(it, &watch);
     } catch (const Interrupted&) {
         throw Interrupted("interrupted while the initial mesh was made; nothing was written");

@@ -4,6 +4,8 @@
 
 #include "app/case.h"
 #include "app/commands.h"
+#include "app/ending.h"
+#include "app/foresight.h"
 #include "app/initial_mesh.h"
 #include "app/interrupt.h"
 #include "app/run_folder.h"
@@ -114,6 +116,7 @@ public:
 
     [[nodiscard]] const Place& place() const { return place_; }
     [[nodiscard]] Checkpoint checkpoint() const { return checkpoint_of(place_, it_); }
+    [[nodiscard]] const Mesh& mesh() const { return place_.state.moving.reference(); }
 
 private:
     void write(const StepReport& report, std::chrono::steady_clock::time_point begin) {
@@ -153,13 +156,17 @@ auto together(const Ranks& ranks, Deed deed) {
     }
 }
 
-/// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint.
+/// What was done is kept, whatever goes wrong: the last accepted step is in the checkpoint, and the page says why.
 int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& progress,
                const std::filesystem::path& case_file) {
     try {
         together(ranks, [&] { loop.run(); });
         return 0;
-    } catch (const FileError&) {
+    } catch (const FileError& error) {
+        try {
+            output.write_end(error, loop.mesh());
+        } catch (const FileError&) {  // what could not be written first is what is told
+        }
         throw;  // the checkpoint could not be written either
     } catch (const Interrupted&) {
         output.write_checkpoint(loop.checkpoint());
@@ -167,9 +174,11 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& 
         return 130;
     } catch (const CaseError& error) {  // a quantity that has no value: first asked for here
         output.write_checkpoint(loop.checkpoint());
+        output.write_end(error, loop.mesh());
         throw CaseError(fmt::format("{}: {}", case_file.string(), error.what()));
-    } catch (const std::runtime_error&) {
+    } catch (const std::runtime_error& error) {
         output.write_checkpoint(loop.checkpoint());
+        output.write_end(error, loop.mesh());
         throw;
     }
 }
@@ -185,11 +194,11 @@ Place begin(const Case& it, const Ranks& ranks, Progress& progress) {
     return place;
 }
 
-/// Where a run begins. Nothing is written yet.
+/// Where a run begins. Nothing is written yet; but if the mesh cannot be made, a page that says why.
 Place first_place(const RunOptions& options, Case& it, const Ranks& ranks, Progress& progress) {
     try {
         return together(ranks, [&] {
-            check_all_paths(it, ranks.watch);
+            warn(foresee(it, ranks.watch));
             Place place = options.resume ? resume(it, options, ranks.watch) : begin(it, ranks, progress);
             heed(ranks);  // all have looked at the folder before one writes
             return place;
@@ -197,6 +206,10 @@ Place first_place(const RunOptions& options, Case& it, const Ranks& ranks, Progr
     } catch (const Interrupted&) {
         if (options.resume) throw Interrupted("interrupted before the first step; the folder is as it was");
         throw Interrupted("interrupted while the initial mesh was made; nothing was written");
+    } catch (const FloorError& error) {
+        const bool holds_another = std::filesystem::exists(options.out / "steps.csv");  // with --force: as it was
+        if (ranks.rank == 0 && !holds_another) report_end(options.out, error, nullptr);
+        throw;
     }
 }
 

@@ -1,6 +1,7 @@
 #include "app/run_folder.h"
 
 #include "base/error.h"
+#include "report/run_files.h"
 
 #include <fmt/format.h>
 
@@ -38,7 +39,8 @@ void check_run_folder(const RunOptions& options) {
 void clear_run_folder(const std::filesystem::path& folder) {
     namespace fs = std::filesystem;
     std::vector<fs::path> files;
-    for (const char* name : {checkpoint_name, "case.toml", "steps.csv", "bodies.csv", "frames.pvd", "report.html"})
+    for (const char* name : {checkpoint_name, "case.toml", "steps.csv", "bodies.csv", "frames.pvd", "report.html",
+                             ending_name, ending_mesh_name})
         files.push_back(folder / name);
     std::error_code none;
     for (const auto& frame : fs::directory_iterator(folder / "frames", none))

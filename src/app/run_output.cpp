@@ -1,6 +1,7 @@
 #include "app/run_output.h"
 
 #include "app/body_sizes.h"
+#include "app/ending.h"
 #include "app/run_folder.h"
 #include "base/error.h"
 #include "io/file.h"
@@ -40,6 +41,7 @@ RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std:
                      const State& state, Progress& progress)
     : overwrite_(options.force), folder_(options.out), it_(it), speak_(speak), progress_(progress) {
     if (!speak_) return;
+    forget_end(folder_);
     if (options.resume) go_on(step, state);
     else start(state);
 }
@@ -115,6 +117,10 @@ void RunOutput::write_frame(std::int64_t step, const State& state) {
 
 void RunOutput::write_checkpoint(const Checkpoint& checkpoint) {
     if (speak_) kropla::write_checkpoint(folder_ / checkpoint_name, checkpoint);
+}
+
+void RunOutput::write_end(const std::exception& why, const Mesh& mesh) {
+    if (speak_) report_end(folder_, why, &mesh);
 }
 
 void RunOutput::show_progress(std::int64_t step, const StepReport& report, double seconds_left) {

@@ -24,6 +24,8 @@ public:
     void write_step(std::int64_t step, const StepReport& report, const State& state);
     void write_frame(std::int64_t step, const State& state);
     void write_checkpoint(const Checkpoint& checkpoint);
+    /// Why the run ends early, with the mesh as it was last (`report_end`).
+    void write_end(const std::exception& why, const Mesh& mesh);
     void show_progress(std::int64_t step, const StepReport& report, double seconds_left);
     void say(const std::string& line) { progress_.say(line); }
 

@@ -2,7 +2,7 @@
 
 #include "app/step.h"
 
-#include "base/error.h"
+#include "app/ending.h"
 #include "mesh/quality.h"
 
 #include <fmt/format.h>
@@ -152,18 +152,18 @@ void report_changes(const MovingMesh& moving, StepReport& report) {
 }
 
 /// The step as far as it can be taken back, fields and all. Returns why it is refused, if it is.
-std::optional<std::string> attempt(MovingMesh& moving, std::vector<NodalField>& fields, const Case& it,
+std::optional<Refusal> attempt(MovingMesh& moving, std::vector<NodalField>& fields, const Case& it,
                                    const Ranks& ranks, double dt, StepReport& report) {
     report.energy_by_transfer = report.transferred_fraction = 0;
     report.transfer = {};
     try {
         prepare(moving, fields, moving.time() + dt, it, report);
         heed(ranks.watch);
-        if (const auto refusal = moving.refusal()) return refusal->why;
+        if (const auto refusal = moving.refusal()) return refusal;
         simulate(moving, fields, it, ranks, dt, report);
         remesh(moving, fields, it, report);
     } catch (const TransferError& error) {
-        return error.what();
+        return Refusal{.why = error.what(), .limiting = {}};
     }
     return std::nullopt;
 }
@@ -178,11 +178,12 @@ StepReport try_step(State& state, const Case& it, const Ranks& ranks, const Step
         std::vector<NodalField> fields = state.fields;
         if (const auto why = attempt(moving, fields, it, ranks, dt, report)) {
             moving.refuse();
-            report.refused = *why;
+            report.refused = why->why;
             if (report.attempts > 1) dt /= 2;
             if (dt >= options.least_dt) continue;
-            throw FloorError(fmt::format("at t = {:.6g} s the mesh cannot go on, even by {:.2g} s: {}", start,
-                                         2 * dt, *why));
+            throw StuckError(fmt::format("the mesh cannot go on from t = {}, even by {}: {}", time_words(start),
+                                         time_words(2 * dt), why->why),
+                             why->place);
         }
         if (to_roll_back) {
             moving.refuse();

@@ -43,7 +43,7 @@ struct StepOptions {
 /// Takes the state one step on, by `dt` or as much of it as can be done: an attempt that is refused is tried
 /// again with the mesh remeshed where it got stuck, then with half the way; so is one whose fields cannot be carried
 /// with their integrals. On any exception the state is as it was.
-/// Throws FloorError if the way left is below `least_dt`, SolverError if the solver does not converge, FieldError if
+/// Throws StuckError if the way left is below `least_dt`, SolverError if the solver does not converge, FieldError if
 /// a field is not finite, Interrupted if the watch of the ranks says so (AllInterrupted if all ranks know).
 [[nodiscard]] StepReport time_step(State& state, const Case& it, const Ranks& ranks,
                                    const StepOptions& options);

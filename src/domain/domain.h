@@ -52,8 +52,8 @@ struct Body {
     std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
 };
 
-/// The target edge length at distance R from the nearest body: min(far, surface + growth * R), and nowhere more than
-/// `largest_size`.
+/// The target edge length at distance R from the nearest body: min(far, surface + growth * R), and nowhere
+/// more than `largest_size`.
 struct SizeField {
     double surface = 2e-4;  // [m]
     double growth = 0.1;    // [-] rise per metre of distance, 0 ... 1
@@ -87,20 +87,37 @@ struct Snapshot {
 /// layer ends in so thin a prism, as asked, that the first tets on triangles of that size would be more than
 /// twice as large, by the cube roots of their volumes.
 [[nodiscard]] double surface_size(const Snapshot& at, std::size_t body);
-/// The largest target size in the box [m]: size.far, or less where the box is so thin that cells of that size would
-/// reach from one wall to the opposite one.
+/// The largest target size in the box [m]: size.far, or less where the box is so thin that cells of that size
+/// would reach from one wall to the opposite one.
 [[nodiscard]] double largest_size(const Box& box, const SizeField& size);
 /// The target edge length at x [m]: the least that SizeField gives for a body at its surface_size.
 [[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
 
-/// How far at most the vertices of a body's surface stand outside of its shape [m], so that the polyhedron has
-/// the body's volume (generate.h), at triangles of edge length `size` [m].
+/// How far at most the vertices of a body's surface stand outside of its shape [m], so that the polyhedron
+/// has the body's volume (generate.h), at triangles of edge length `size` [m].
 [[nodiscard]] double outward_shift(const Shape& shape, double size);
 
-/// Throws DomainError, saying which bodies, where, the distance found and the size that would do, if at time
-/// t a body is outside the box, or two bodies overlap, or a gap is too narrow for the size asked (below
-/// `least_gap` surface sizes, to which comes how far the bodies' polyhedra stand out of their shapes), or the
-/// surface size is too coarse for a body's curvature.
+/// What keeps size.surface from being larger.
+struct SizeLimit {
+    double most;      // [m]; infinite if nothing does
+    std::string why;  // what asks for it: "body "a" is 0.0625 m from the wall y min, too close"
+};
+/// Gaps of fewer surface sizes than this are too narrow for the initial mesh: R/r = 7 for a tet across on an
+/// equilateral triangle.
+inline constexpr double least_gap_in_sizes = 0.25;
+/// The gap, in surface sizes, in which a flat tet on an equilateral triangle of one surface size is as bad as
+/// the limit of R/r; in narrower ones the engine has to find smaller cells, and may not.
+[[nodiscard]] double doubtful_gap(double max_aspect_ratio);
+/// The least of what the bodies' radii of curvature, and their gaps to each other and to the walls at time t,
+/// allow where a gap has to hold `least_gap` sizes between the bodies' polyhedra. Limits above size.surface
+/// may be left out. Throws DomainError if a body is outside the box, touches a wall, or overlaps another.
+[[nodiscard]] SizeLimit surface_limit(const Domain& domain, double t, double least_gap);
+/// ", too close for size.surface = 0.0002 m; at most 4.1e-05 m would do"
+[[nodiscard]] std::string too_coarse(const SizeLimit& limit, double surface_size);
+
+/// Throws DomainError, saying what is in the way, where, the distance found and the size that would do for
+/// all bodies, if at time t a body is outside the box, or two bodies overlap, or size.surface is above
+/// `surface_limit`.
 void check_placement(const Domain& domain, double t, double least_gap);
 
 /// The thickness [m] of the largest layer that is not squeezed anywhere, at time t: a third of the least gap
@@ -116,9 +133,5 @@ void check_placement(const Domain& domain, double t, double least_gap);
 /// height and growth that would fit. Also if there are more layers than patches for them (13). In gaps that
 /// are wider than that a layer may have to be thinner than asked: layer_room.h.
 void check_layers(const Domain& domain, double t);
-
-/// Throws DomainError if between `start` and `end`, looked at `samples` times, a motion is not finite, or
-/// takes a body out of the box or into another; says which, when and where. Interrupted if the watch says so.
-void check_paths(const Domain& domain, double start, double end, int samples, const Watch* watch = nullptr);
 
 }  // namespace kropla

@@ -4,5 +4,8 @@ list(APPEND KROPLA_MESH_FILES
     domain/gap.cpp
     domain/layer_fit.cpp
     domain/layer_room.cpp
+    domain/approach.cpp
+    domain/paths.cpp
     domain/placement.cpp
+    domain/words.cpp
 )

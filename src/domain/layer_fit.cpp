@@ -1,13 +1,12 @@
 // Do the layers fit where the bodies stand at the start?
 
 #include "base/error.h"
+#include "domain/approach.h"
 #include "domain/layer_room.h"
 #include "mesh/prisms.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -17,27 +16,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::string written(double value, const char* unit = " m") {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.3g%s", value, unit);
-    return text;
-}
-
-/// `value` > 0 with two digits, rounded down: what is advised shall really do.
-std::string rounded_down(double value, const char* unit = " m") {
-    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-    return written(std::floor(value / digit) * digit, unit);
-}
-
 /// "; the largest layer that fits is 3.3e-05 m thick: layer.first_height of at most 5.3e-06 m, or ..."
 std::string advice(const LayerOptions& layer, double room) {
-    std::string text = "; the largest layer that fits is " + rounded_down(room) + " thick";
+    std::string text = "; the largest layer that fits is " + metres(rounded_down(room)) + " thick";
     const double height = layer.first_height * (room / thickness(layer)),
                  growth = fitting_growth(layer, room);  // below 1 it is no advice
-    if (height > 0) text += ", by layer.first_height of at most " + rounded_down(height);
+    if (height > 0) text += ", by layer.first_height of at most " + metres(rounded_down(height));
     if (layer.count > 1 && growth >= 1)
         text += (height > 0 ? " or" : ", by") + std::string(" layer.growth of at most ") +
-                rounded_down(growth, "");
+                written(rounded_down(growth));
     return text;
 }
 
@@ -49,17 +36,13 @@ struct Nearby {
 };
 
 std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t body) {
-    constexpr std::array walls = {"the wall x min", "the wall x max", "the wall y min",
-                                  "the wall y max", "the wall z min", "the wall z max"};
     const double own = thickness(*at.layers[body]);
     const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], surface_size(at, i)); };
     const Bounds held = bounds(at.shapes[body]);
     std::vector<Nearby> found;
     for (int wall = 0; wall < 6; ++wall) {
-        const int axis = wall / 2;
-        const double gap =
-            wall % 2 == 0 ? held.min[axis] - at.box.min[axis] : at.box.max[axis] - held.max[axis];
-        found.push_back({gap, share_of_gap * (gap - out(body)), own, walls[static_cast<std::size_t>(wall)]});
+        const double gap = wall_gap(at.box, held, wall);
+        found.push_back({gap, share_of_gap * (gap - out(body)), own, wall_name(wall)});
     }
     for (std::size_t other = 0; other < at.shapes.size(); ++other) {
         if (other == body) continue;
@@ -67,22 +50,22 @@ std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t
         const LayerOptions* theirs = layer_at_side(at, other, false);
         found.push_back({gap, (gap - out(body) - out(other)) * (theirs ? share_between_layers : share_of_gap),
                          own + (theirs ? thickness(*theirs) : 0),
-                         "body \"" + domain.bodies[other].name + "\""});
+                         named(domain.bodies[other])});
     }
     return found;
 }
 
-std::string its_layer(const Body& body) { return "body \"" + body.name + "\": its layer"; }
+std::string its_layer(const Body& body) { return named(body) + ": its layer"; }
 
 void check_values(const Body& body, double widest) {
     const LayerOptions& layer = *body.layer;
     if (layer.count < 1) throw DomainError(its_layer(body) + " has no prisms: layer.count is below 1");
     if (!(layer.first_height > 0) || !std::isfinite(layer.first_height))
         throw DomainError(its_layer(body) + " needs a positive layer.first_height, got " +
-                          written(layer.first_height) + advice({1, widest, 1}, widest));
+                          metres(layer.first_height) + advice({1, widest, 1}, widest));
     if (!(layer.growth > 0) || !std::isfinite(layer.growth))
         throw DomainError(its_layer(body) + " needs a positive layer.growth, got " +
-                          written(layer.growth, ""));
+                          written(layer.growth));
     if (!std::isfinite(thickness(layer)))
         throw DomainError(its_layer(body) + " overflows: its thickness is not a number" +
                           advice(layer, widest));
@@ -99,21 +82,21 @@ double inner_room(const Shape& shape) { return share_inside * least_curvature_ra
 void check_outside(const Domain& domain, const Snapshot& at, std::size_t body) {
     const LayerOptions& layer = *at.layers[body];
     for (const Nearby& n : nearby(domain, at, body)) {
-        const std::string gap = "the gap of " + written(n.gap) + " to " + n.name;
+        const std::string gap = "the gap of " + metres(n.gap) + " to " + n.name;
         if (n.gap < least_gap(layer))
             throw DomainError(its_layer(domain.bodies[body]) + " has no room: " + gap +
-                              " is below layer.min_gap = " + written(least_gap(layer)));
+                              " is below layer.min_gap = " + metres(least_gap(layer)));
         if (n.both > n.gap)
-            throw DomainError(its_layer(domain.bodies[body]) + " is " + written(thickness(layer)) +
+            throw DomainError(its_layer(domain.bodies[body]) + " is " + metres(thickness(layer)) +
                               " thick, too much for " + gap + advice(layer, outer_room(domain, at, body)));
     }
 }
 
 void check_inside(const Body& body, const Shape& shape) {
     if (thickness(*body.layer) <= least_curvature_radius(shape)) return;
-    throw DomainError(its_layer(body) + " inside is " + written(thickness(*body.layer)) +
+    throw DomainError(its_layer(body) + " inside is " + metres(thickness(*body.layer)) +
                       " thick, too much for a body that is curved with a radius of " +
-                      written(least_curvature_radius(shape)) + advice(*body.layer, inner_room(shape)));
+                      metres(least_curvature_radius(shape)) + advice(*body.layer, inner_room(shape)));
 }
 
 }  // namespace

@@ -250,7 +250,6 @@ Mesh assembled(const std::vector<Surface>& walls, const std::vector<FilledRoom>&
 }  // namespace
 
 Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch) {
-    constexpr double least_gap_in_sizes = 0.25;  // R/r = 7 for the tet across on an equilateral one
     constexpr int recoveries = 20;
     check_placement(domain, 0, least_gap_in_sizes);
     check_layers(domain, 0);

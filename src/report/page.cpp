@@ -4,6 +4,7 @@
 #include "io/xml.h"
 #include "report/chart.h"
 #include "report/cuts.h"
+#include "report/ending.h"
 #include "report/run_files.h"
 #include "report/style.h"
 #include "report/summary.h"
@@ -117,8 +118,10 @@ std::string draw_head(const RunFiles& run, const RunSummary& s) {
                        : v.kind == Verdict::Kind::bad ? "bad"
                                                       : "unfinished";
     const std::string floor = s.floor ? " (limit " + readable(*s.floor, 3) + ")" : "";
-    return "<h1>Run: " + escaped(run.name) + "</h1><p class=\"verdict " + kind + "\">" + escaped(v.text) +
-           "</p><div class=\"tiles\">" + tile("steps", readable_count(s.steps)) +
+    const std::string head = "<h1>Run: " + escaped(run.name) + "</h1><p class=\"verdict " + kind + "\">" +
+                             escaped(v.text) + "</p>";
+    if (run.steps.columns.empty()) return head;
+    return head + "<div class=\"tiles\">" + tile("steps", readable_count(s.steps)) +
            tile("worst aspect ratio R/r" + floor, s.steps > 0 ? readable(s.worst_aspect_ratio, 4) : "–") +
            tile(s.refused == 1 ? "refused attempt" : "refused attempts", readable_count(s.refused)) +
            tile("mesh", readable_time(s.mesh_seconds)) +
@@ -159,6 +162,12 @@ std::string draw_figures(const RunFiles& run, const RunSummary& summary) {
     return html + "</table></section>";
 }
 
+/// What is known of a run once it has begun.
+std::string draw_steps(const RunFiles& run, const RunSummary& summary, const Watch* watch) {
+    return draw_charts(run, summary) + '\n' + draw_cuts(run, watch) + '\n' + draw_bodies(run) + draw_figures(run, summary) +
+           "\n<section><h2>The case</h2><pre>" + escaped(run.case_text) + "</pre></section>\n";
+}
+
 }  // namespace
 
 void write_report(const std::filesystem::path& dir, const Watch* watch) {
@@ -169,12 +178,10 @@ void write_report(const std::filesystem::path& dir, const Watch* watch) {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/><title>" +
         escaped(run.name) + " – Kropla</title><style>" + std::string(page_style) +
         "</style></head>\n<body><main>";
-    html += draw_head(run, summary) + '\n' + draw_charts(run, summary) + '\n' + draw_cuts(run, watch) + '\n';
-    html += draw_bodies(run) + draw_figures(run, summary);
-    html += "\n<section><h2>The case</h2><pre>" + escaped(run.case_text) +
-            "</pre></section>\n<p class=\"soft\">Drawn from the files of the run; <code>kropla report</code> "
-            "draws it "
-            "again.</p></main></body></html>\n";
+    html += draw_head(run, summary) + '\n' + draw_ending(run);
+    if (!run.steps.columns.empty()) html += draw_steps(run, summary, watch);
+    html += "<p class=\"soft\">Drawn from the files of the run; <code>kropla report</code> draws it again.</p></main>"
+            "</body></html>\n";
     write_file(dir / "report.html", html);
 }
 

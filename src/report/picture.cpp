@@ -13,6 +13,7 @@ namespace kropla {
 namespace {
 
 constexpr double width = 300;  // [pixels] of a picture
+constexpr double mark_radius = 13;  // [pixels]
 constexpr int bands = 32;      // of colour
 constexpr int body_classes = 4;
 
@@ -130,7 +131,7 @@ CutWindow narrowed(CutWindow window, std::span<const CutPolygon> cut, Point2 mid
     return window;
 }
 
-std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window) {
+std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window, std::optional<Point2> mark) {
     const Drawing drawing = drawing_of(window);
     std::map<std::pair<Region, bool>, std::string> paths;
     for (const CutPolygon& polygon : cut) {
@@ -142,6 +143,11 @@ std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window)
     std::string svg = opening(drawing, "picture cells");
     for (const auto& [cells, path] : paths) {
         svg += "<path class=\"" + cells_class(cells.first, cells.second) + "\" d=\"" + path + "\"/>";
+    }
+    if (mark) {
+        const Point2 at = on_drawing(drawing, *mark);
+        svg += "<circle class=\"mark\" cx=\"" + pixels(at.x) + "\" cy=\"" + pixels(at.y) + "\" r=\"" +
+               pixels(mark_radius) + "\"/>";
     }
     return svg + "</svg>";
 }

@@ -3,6 +3,7 @@
 #include "report/section.h"
 #include "simulate/fields.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,8 +23,9 @@ struct CutWindow {
                                  std::size_t most);
 
 /// The cells of a cut as inline SVG, every region in its colour (class r0, r1, ... of the page), its prisms in
-/// a shade of their own (p0, p1, ...).
-[[nodiscard]] std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window);
+/// a shade of their own (p0, p1, ...); with a ring around `mark`, if it is given.
+[[nodiscard]] std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window,
+                                     std::optional<Point2> mark = {});
 
 /// A field on a cut as inline SVG, in bands of one colour each between `least` and `most`: exact level lines.
 [[nodiscard]] std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,

@@ -1,5 +1,6 @@
 #include "report/run_files.h"
 
+#include "base/error.h"
 #include "io/file.h"
 
 #include <algorithm>
@@ -20,9 +21,54 @@ std::string stripped(std::string_view line) {
     return text;
 }
 
+/// The line `key = ...` of a file in the plain form in which a run writes it, without the key; empty without it.
+std::string_view value_of(std::string_view text, std::string_view key) {
+    const std::string wanted = '\n' + std::string(key) + " = ";
+    const std::size_t at = text.find(wanted);
+    if (at == std::string_view::npos) return {};
+    text.remove_prefix(at + wanted.size());
+    return text.substr(0, text.find('\n'));
+}
+
+/// What stands between quotes, its escapes undone.
+std::string unquoted(std::string_view quoted) {
+    std::string text;
+    for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
+        if (quoted[i] == '\\' && i + 2 < quoted.size()) ++i;
+        text += quoted[i];
+    }
+    return text;
+}
+
+Ending read_ending(const std::filesystem::path& path) {
+    const std::string text = read_file(path);
+    Ending ending{unquoted(value_of(text, "why")), {}};
+    if (ending.why.empty()) throw FileError(path.string() + ": does not say why the run ended");
+    std::string_view place = value_of(text, "place");
+    Vec3 at;
+    int read = 0;
+    for (; read < 3 && !place.empty(); ++read) {
+        place.remove_prefix(std::min(place.find_first_not_of("[, "), place.size()));
+        const auto [stop, error] = std::from_chars(place.data(), place.data() + place.size(), at[read]);
+        if (error != std::errc()) break;
+        place.remove_prefix(static_cast<std::size_t>(stop - place.data()));
+    }
+    if (read == 3) ending.place = at;
+    return ending;
+}
+
+/// Of a run that ended before its first step.
+RunFiles without_steps(const std::filesystem::path& dir) {
+    RunFiles run{.dir = dir, .name = folder_name(dir), .case_text = {}, .steps = {}, .bodies = {}, .frames = {}};
+    run.ending = read_ending(dir / ending_name);
+    return run;
+}
+
 }  // namespace
 
 RunFiles read_run_files(const std::filesystem::path& dir) {
+    const bool ended = std::filesystem::exists(dir / ending_name);
+    if (ended && !std::filesystem::exists(dir / "steps.csv")) return without_steps(dir);
     RunFiles run{.dir = dir,
                  .name = folder_name(dir),
                  .case_text = read_file(dir / "case.toml"),
@@ -30,6 +76,7 @@ RunFiles read_run_files(const std::filesystem::path& dir) {
                  .bodies = {},
                  .frames = read_pvd(dir / "frames.pvd")};
     if (std::filesystem::exists(dir / "bodies.csv")) run.bodies = read_table(dir / "bodies.csv");
+    if (ended) run.ending = read_ending(dir / ending_name);
     std::ranges::stable_sort(run.frames, {}, &SeriesEntry::time);
     return run;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/vec3.h"
 #include "io/pvd.h"
 #include "report/table.h"
 
@@ -11,6 +12,15 @@
 
 namespace kropla {
 
+/// In a run's folder, if the run ended early: why, and the mesh as it was last.
+inline constexpr const char *ending_name = "ended.toml", *ending_mesh_name = "ended.vtu";
+
+/// Why a run ended early.
+struct Ending {
+    std::string why;            // a sentence
+    std::optional<Vec3> place;  // [m] where
+};
+
 /// What a run has left in its folder, without the frames themselves.
 struct RunFiles {
     std::filesystem::path dir;
@@ -19,10 +29,11 @@ struct RunFiles {
     Table steps;
     std::optional<Table> bodies;      // their sizes; runs of older versions have none
     std::vector<SeriesEntry> frames;  // by time
+    std::optional<Ending> ending = {};
 };
 
-/// Reads DIR/case.toml, steps.csv, bodies.csv where it is there, and frames.pvd. Throws FileError, naming the
-/// file, if another is missing or one is broken.
+/// Reads DIR/case.toml, steps.csv and frames.pvd, and bodies.csv and ended.toml where they are there. Throws FileError,
+/// naming the file, if another is missing or one is broken. Of a run that ended before its first step there may be ended.toml alone.
 [[nodiscard]] RunFiles read_run_files(const std::filesystem::path& dir);
 
 /// The number that stands as `key` in the table `[section]` of a case as run; nothing if there is none. It

@@ -60,6 +60,7 @@ path.limit { stroke: var(--limit); stroke-width: 1.6; stroke-dasharray: 6 4; }
 .hints rect { fill: transparent; } .hints rect:hover { fill: var(--soft); fill-opacity: .16; }
 .picture { border-radius: 4px; margin-bottom: 8px; } .cells path { stroke: var(--edge); stroke-width: .35;
   stroke-linejoin: round; }
+.mark { fill: none; stroke: var(--limit); stroke-width: 2.5; }
 .field path { stroke-width: .5; stroke-linejoin: round; } .bar { max-width: 520px; margin-top: 8px; }
 .r0 { fill: var(--r0); } .r1 { fill: var(--r1); } .r2 { fill: var(--r2); } .r3 { fill: var(--r3); }
 .r4 { fill: var(--r4); } .p0 { fill: var(--p0); } .p1 { fill: var(--r1); fill-opacity: .55; }

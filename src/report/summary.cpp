@@ -71,6 +71,8 @@ void add_balances(const Table& steps, Figures& rows) {
 
 RunSummary summarise_run(const RunFiles& run) {
     RunSummary s;
+    if (run.ending) s.ended = run.ending->why;
+    if (run.steps.columns.empty()) return s;
     s.end = number_of_case(run.case_text, "time", "end");
     s.floor = number_of_case(run.case_text, "quality", "max_aspect_ratio");
     s.steps = static_cast<int>(run.steps.rows);
@@ -90,6 +92,10 @@ RunSummary summarise_run(const RunFiles& run) {
 
 Verdict verdict(const RunSummary& s) {
     const std::string at = readable_time(s.reached);
+    if (!s.ended.empty()) {
+        const std::string where = s.end ? " at " + at + " of " + readable_time(*s.end) : "";
+        return {Verdict::Kind::bad, "Ended early" + where + ": " + s.ended};
+    }
     if (s.floor && !(s.worst_aspect_ratio <= *s.floor)) {
         return {Verdict::Kind::bad, "Step " + std::to_string(s.worst_step) + " exceeds the limit of R/r"};
     }

@@ -18,9 +18,10 @@ struct RunSummary {
     double worst_aspect_ratio = 0;  // [-] of all steps; 0 without steps
     int worst_step = 0;             // where it was
     int refused = 0;                // attempts
+    std::string ended;              // why the run ended early; empty if it did not
     double mesh_seconds = 0, simulate_seconds = 0, transfer_seconds = 0;  // [s] of the whole run
 };
-/// Throws FileError if steps.csv lacks a column or holds what is no number.
+/// Without steps.csv the times and counts are 0. Throws FileError if steps.csv lacks a column or holds what is no number.
 [[nodiscard]] RunSummary summarise_run(const RunFiles& run);
 
 struct Verdict {

@@ -71,7 +71,7 @@ TEST(Program, BadCasesEndWithTwo) {
 TEST(Program, BodiesThatLeaveTheBoxEndWithTwo) {
     const TemporaryFolder folder;
     const std::string leaving = replaced(starting_case(), "\"-1.0*t\"", "\"-2.0*t\"");
-    const std::string lost = replaced(starting_case(), "\"-1.0*t\"", "\"sqrt(0.005-t)\"");
+    const std::string lost = replaced(starting_case(), "\"-1.0*t\"", "\"-sqrt(0.005-t)/10\"");
     write(folder.path / "leaving.toml", leaving);
     write(folder.path / "lost.toml", lost);
     for (const char* command :

@@ -110,14 +110,16 @@ TEST(Run, KeepsTheVolumesOfBodyAndBox) {
     EXPECT_NEAR(region_volume(last, Region(1)) + region_volume(last, Region(0)), box, 1e-12 * box);
 }
 
-// The box is insulated: neither the solution of a step nor the transfer to the remeshed mesh changes the energy.
+// The box is insulated: neither the solution of a step nor the transfer to the remeshed mesh changes the
+// energy.
 TEST(Run, KeepsTheEnergyOfAnInsulatedBox) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(6));
     ASSERT_EQ(kropla_program(folder, "run a.toml --out d").code, 0);
     const Table steps = read_table(folder.path / "d/steps.csv");
     const auto energy = numbers(steps, "energy_integral"), error = numbers(steps, "energy_transfer_error"),
-               before = numbers(steps, "energy_before_transfer"), share = numbers(steps, "transferred_fraction");
+               before = numbers(steps, "energy_before_transfer"),
+               share = numbers(steps, "transferred_fraction");
     for (std::size_t i = 0; i < energy.size(); ++i) {
         EXPECT_NEAR(energy[i] / energy[0], 1, 1e-10) << "step " << i + 1;
         EXPECT_NEAR(energy[i] / before[i], 1, 1e-12) << "step " << i + 1;
@@ -185,13 +187,47 @@ TEST(Run, EndsWithThreeWhereTheFloorsCannotBeKept) {
     write(folder.path / "land.toml", landing_case());
     const Outcome it = kropla_program(folder, "run land.toml --out d");
     EXPECT_EQ(it.code, 3) << it.err;
-    expect_one_line(it.err, "at t = 0.0009");
-    expect_one_line(it.err, "cell ");
-    expect_one_line(it.err, ") m ");
+    const std::size_t line = it.err.find('\n') + 1;
+    EXPECT_TRUE(it.err.starts_with(
+        "kropla: warning: at t = 1 ms body \"droplet\" is 0.000115 m from the wall z min, 0.19 "
+        "of size.surface = 0.0006 m"))
+        << it.err;
+    const std::string said = it.err.substr(line);
+    expect_one_line(said, "the mesh cannot go on from t = 9");
+    expect_one_line(said, " us body \"droplet\" is ");
+    expect_one_line(said, " m from the wall z min, ");
+    expect_one_line(said, " would do (cell ");
+    expect_one_line(said, ", limit 5)\n");
     const Table steps = read_table(folder.path / "d/steps.csv");
     EXPECT_GT(steps.rows, 2u);
-    expect_floors_kept(steps, 10);
+    expect_floors_kept(steps, 5);
     expect_valid_so_far(folder.path / "d");
+
+    const std::string page = contents(folder.path / "d/report.html");
+    EXPECT_NE(page.find("Ended early at 9"), std::string::npos);
+    EXPECT_NE(page.find(" µs of 1 ms: the mesh cannot go on from t = 9"), std::string::npos);
+    EXPECT_NE(page.find("Where it ended"), std::string::npos);
+    EXPECT_EQ(kropla_program(folder, "check d/ended.vtu").code, 0);
+    EXPECT_EQ(kropla_program(folder, "report d").code, 0);
+    EXPECT_EQ(contents(folder.path / "d/report.html"), page);
+}
+
+// In a gap of 0.26 of an edge flat cells have R/r 7.
+TEST(Run, LeavesAReportIfTheInitialMeshCannotBeMade) {
+    const TemporaryFolder folder;
+    const std::string text = replaced(landing_case(), "0.0, 0.0, 0.002]", "0.0, 0.0, 0.001156]");
+    write(folder.path / "low.toml", replaced(text, "-0.885*t", "0"));
+    const Outcome it = kropla_program(folder, "run low.toml --out d");
+    EXPECT_EQ(it.code, 3) << it.err;
+    expect_one_line(it.err.substr(it.err.find('\n') + 1), "the initial mesh cannot be made: at t = 0 s ");
+    const std::string page = contents(folder.path / "d/report.html");
+    EXPECT_NE(page.find("Ended early: the initial mesh cannot be made: at t = 0 s "), std::string::npos);
+    EXPECT_NE(page.find("Where it ended"), std::string::npos);
+
+    write(folder.path / "high.toml", short_case(1));  // the folder takes another run
+    EXPECT_EQ(kropla_program(folder, "run high.toml --out d").code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "d/ended.toml"));
+    EXPECT_NE(contents(folder.path / "d/report.html").find("Finished at"), std::string::npos);
 }
 
 // A floor so high that the size of cells is to give way to it.
@@ -212,6 +248,7 @@ TEST(Run, EndsWithFourWhenTheSolverFails) {
     EXPECT_EQ(it.code, 4);
     expect_one_line(it.err, "did not converge");
     expect_valid_so_far(folder.path / "d");
+    EXPECT_NE(contents(folder.path / "d/report.html").find("Ended early at 0 s of "), std::string::npos);
     ASSERT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);  // with the usual options
     ASSERT_EQ(kropla_program(folder, "run a.toml --out whole").code, 0);
     expect_same_run(folder.path / "d", folder.path / "whole");

@@ -33,9 +33,6 @@ std::string refusal(Check check) {
 std::string placement(const Domain& domain) {
     return refusal([&] { check_placement(domain, 0, 0.5); });
 }
-std::string path(const Domain& domain) {
-    return refusal([&] { check_paths(domain, 0, 0.01, 101); });
-}
 
 }  // namespace
 
@@ -137,33 +134,13 @@ TEST(Placement, FindsTheDistanceOfEllipsoids) {
     }
 }
 
-TEST(Paths, AcceptsAPathWithin) {
+TEST(Placement, AdvisesASizeThatDoesForAllBodies) {
     Domain domain = one_ball();
-    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1000 * t}, {}}; };
-    EXPECT_EQ(path(domain), "");
-}
-
-TEST(Paths, RefusesAPathOutOfTheBox) {
-    Domain domain = one_ball();
-    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1300 * t}, {}}; };
-    EXPECT_EQ(
-        path(domain),
-        "body \"droplet\": motion takes it out of the box at t = 0.0093 s: its lowest z is -0.09 m, the box "
-        "begins at 0 m");
-}
-
-TEST(Paths, RefusesAMotionThatIsNotANumber) {
-    for (double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-        Domain domain = one_ball();
-        domain.bodies[0].motion = [=](double t) { return Pose{{t < 0.00299 ? 0 : wrong, 0, 0}, {}}; };
-        EXPECT_EQ(path(domain), "body \"droplet\": motion is not a number at t = 0.003 s");
-    }
-}
-
-TEST(Paths, RefusesPathsThatMeet) {
-    Domain domain = one_ball();
-    domain.bodies.push_back(body("drop2", ball({0, 0, 5}, 1)));
-    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1000 * t}, {}}; };
-    EXPECT_EQ(path(domain),
-              "body \"droplet\" and body \"drop2\": motion takes them into each other at t = 0.006 s");
+    domain.bodies.push_back(body("dust", ball({0, 0, 3}, 0.15)));
+    domain.bodies.push_back(body("drop2", ball({0, 0, 10.96875}, 1)));
+    EXPECT_EQ(placement(domain),
+              "body \"droplet\" and body \"drop2\" are 0.0312 m apart, too close for size.surface = 0.2 m; at most "
+              "0.062 m would do");
+    domain.size.surface = 0.062;
+    EXPECT_EQ(placement(domain), "");
 }

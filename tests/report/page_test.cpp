@@ -1,6 +1,8 @@
 #include "base/error.h"
 #include "io/file.h"
+#include "io/vtk.h"
 #include "report/page.h"
+#include "report/run_files.h"
 #include "tiny_run.h"
 
 #include <gtest/gtest.h>
@@ -76,6 +78,51 @@ TEST(Page, ShowsAnInterruptedRun) {
         expect_sound(html);
         EXPECT_NE(html.find("verdict unfinished"), std::string::npos) << rows;
     }
+}
+
+/// A run that ended early, at a place of its mesh.
+void end_tiny_run(const std::filesystem::path& dir) {
+    write_vtu(dir / ending_mesh_name, grid_of_cubes({3, 3, 3}, [](int i, int j, int k) {
+                  return i == 1 && j == 1 && k == 1 ? Region(1) : surroundings;
+              }));
+    write_file(dir / ending_name,
+               "# Why the run ended early.\nwhy = \"at t = 1 ms body \\\"a\\\" is 2e-05 m from the wall z min\"\n"
+               "place = [1.5, 1.4, 0.5]  # m\n");
+}
+
+int count_of(const std::string& html, const std::string& what) {
+    int count = 0;
+    for (auto at = html.find(what); at != std::string::npos; at = html.find(what, at + 1)) ++count;
+    return count;
+}
+
+TEST(Page, BeginsWithWhyARunEndedAndShowsWhere) {
+    const auto dir = test_folder("ended");
+    write_tiny_run(dir, {.rows = 3});
+    end_tiny_run(dir);
+    write_report(dir);
+    const std::string html = read_file(dir / "report.html");
+    std::filesystem::remove_all(dir);
+    expect_sound(html);
+    EXPECT_NE(html.find("verdict bad\">Ended early at 300 ms of 500 ms: at t = 1 ms body &quot;a&quot; is 2e-05 m from the "
+                        "wall z min</p>"), std::string::npos) << html.substr(html.find("verdict bad"), 200);
+    EXPECT_NE(html.find("cut at (1.5, 1.4, 0.5) m"), std::string::npos);
+    EXPECT_EQ(count_of(html, "<circle class=\"mark\""), 2);
+    EXPECT_NE(html.find("Over time"), std::string::npos);
+}
+
+TEST(Page, ShowsARunThatEndedBeforeItsFirstStep) {
+    const auto dir = test_folder("never");
+    std::filesystem::create_directories(dir);
+    end_tiny_run(dir);
+    write_report(dir);
+    const std::string html = read_file(dir / "report.html");
+    EXPECT_EQ(unclosed_tag(html), "");
+    EXPECT_NE(html.find("Ended early: at t = 1 ms body"), std::string::npos);
+    EXPECT_EQ(count_of(html, "<circle class=\"mark\""), 2);
+    write_file(dir / ending_name, "place = [1, 2]\n");
+    EXPECT_THROW(write_report(dir), FileError);
+    std::filesystem::remove_all(dir);
 }
 
 TEST(Page, NamesTheFileThatIsMissingOrBroken) {

@@ -1,0 +1,66 @@
+#include "adapt/refusal.h"
+
+#include "domain/approach.h"
+
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+constexpr double narrow =
+    1;  // target sizes across the place: in less a cell has to be flat, or smaller than wanted
+
+std::string cell_words(const Trouble& trouble) {
+    const std::string cell = trouble.cell.exists() ? "cell " + std::to_string(trouble.cell.value) : "a prism";
+    return cell + " at " + place_words(trouble.place) + ' ' + trouble.fault;
+}
+
+std::string in_gap(const Domain& domain, const Approach& near, const Trouble& trouble) {
+    const double size = domain.size.surface,
+                 would_do = size_for_gap(domain, near, doubtful_gap(trouble.floor));
+    return in_words(domain, near) + ", " + written(near.gap / size) + " of size.surface = " + metres(size) +
+           ": too narrow for the mesh; " +
+           (would_do < size ? "at most " + metres(rounded_down(would_do)) + " would do"
+                            : "a smaller one may do");
+}
+
+std::string in_motion(const Domain& domain, std::size_t body, const Trouble& trouble) {
+    constexpr const char* help = "; a smaller size.surface or size.growth may help";
+    const Body& moves = domain.bodies[body];
+    if (trouble.time == trouble.start) return "the mesh near " + named(moves) + " is not good enough" + help;
+    const double way = way_between(moves.shape, moves.motion(trouble.start), moves.motion(trouble.time));
+    return "the mesh near " + named(moves) + " does not follow it, which moves by " + metres(way) + ", " +
+           written(way / domain.size.surface) + " of size.surface, within " +
+           time_words(trouble.time - trouble.start) + help;
+}
+
+}  // namespace
+
+Refusal explained(const Domain& domain, const Trouble& trouble, double advised_dt) {
+    Refusal refusal{{}, trouble.cell, advised_dt, trouble.place, trouble.time, {}};
+    const Snapshot at = snapshot(domain, trouble.time);
+    refusal.near = approach_at(at, trouble.place, trouble.time);
+    std::string what = "the mesh is not good enough";
+    if (refusal.near) {
+        const Approach& near = *refusal.near;
+        const bool is_gap =
+            near.gap > 0 && width_at(at, near, trouble.place) < narrow * target_size(at, trouble.place);
+        what = is_gap ? in_gap(domain, near, trouble) : in_motion(domain, near.body, trouble);
+    }
+    refusal.why = "at t = " + time_words(trouble.time) + ' ' + what + " (" + cell_words(trouble) + ')';
+    return refusal;
+}
+
+double time_until_gap(const Domain& domain, const Approach& approach, double start, double end,
+                      double least) {
+    if (gap_at(domain, approach, end) >= least) return end - start;
+    if (gap_at(domain, approach, start) < least) return 0;
+    double allowed = start, too_late = end;
+    for (int halving = 0; halving < 50; ++halving) {
+        const double middle = (allowed + too_late) / 2;
+        (gap_at(domain, approach, middle) >= least ? allowed : too_late) = middle;
+    }
+    return allowed - start;
+}
+
+}  // namespace kropla
