@@ -129,7 +129,7 @@ void check_placement(const Domain& domain, double t, double least_gap) {
         assert(is_finite(at.shapes[i].centre) && at.shapes[i].semi_axes.x > 0 &&
                at.shapes[i].semi_axes.y > 0 && at.shapes[i].semi_axes.z > 0);
         check_curvature(domain.bodies[i], at.shapes[i], domain.size.surface);
-        shifts.push_back(outward_shift(at.shapes[i], surface_size(at, i)));
+        shifts.push_back(outward_shift(at.shapes[i], domain.size.surface));
         check_wall_gap(domain.bodies[i], at.shapes[i], domain.box,
                        {least_gap, domain.size.surface, shifts[i]});
         for (std::size_t j = 0; j < i; ++j)

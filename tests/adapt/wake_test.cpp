@@ -38,7 +38,13 @@ double misfits(const Mesh& mesh, const Snapshot& at) {
     return double(wrong) / edges;
 }
 
-void expect_constant_cost(Motion motion, std::uint64_t seed) {
+/// Work per way gone, after the first steps and at the end.
+struct Costs {
+    double early = 0, late = 0;
+};
+
+Costs costs_of_a_run(Motion motion, std::uint64_t seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
     constexpr int steps = 45;
     const Domain domain = small_sphere_in_long_box(std::move(motion));
     const Mesh start = starting_mesh(domain, seed);
@@ -54,21 +60,32 @@ void expect_constant_cost(Motion motion, std::uint64_t seed) {
         const Vec3 next = shape_at(domain.bodies.front(), moving.time()).centre;
         ways.push_back(distance(centre, next));
         centre = next;
-        ASSERT_EQ(verify(moving.reference()), "") << "step " << i;
+        EXPECT_EQ(verify(moving.reference()), "") << "step " << i;
         EXPECT_LE(worst_of(moving.reference()), 6) << "step " << i;
     }
     const auto work_per_way = [&](int first, int last) {
         return std::accumulate(works.begin() + first, works.begin() + last, 0.0) /
                std::accumulate(ways.begin() + first, ways.begin() + last, 0.0);
     };
-    EXPECT_GT(work_per_way(10, 20), 0);
-    EXPECT_LE(work_per_way(steps - 10, steps), 1.5 * work_per_way(10, 20));
     EXPECT_NEAR(count_vertices(moving.reference()), count_vertices(start), 0.15 * count_vertices(start));
     EXPECT_LE(misfits(moving.reference(), snapshot(domain, 1)), misfits_at_start + 0.02);
+    return {work_per_way(10, 20), work_per_way(steps - 10, steps)};
+}
+
+/// The cost of single runs differs by a third, either way; of several it does not rise.
+void expect_constant_cost(const Motion& motion) {
+    Costs sum;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        const Costs costs = costs_of_a_run(motion, seed);
+        EXPECT_GT(costs.early, 0);
+        sum.early += costs.early;
+        sum.late += costs.late;
+    }
+    EXPECT_LE(sum.late, 1.5 * sum.early);
 }
 
 TEST(Wake, CellsLeftBehindAreCoarsenedAndThoseAheadRefined) {
-    expect_constant_cost([](double t) { return Pose{{3.2 * t - 1.6, 0, 0}, {}}; }, 1);
+    expect_constant_cost([](double t) { return Pose{{3.2 * t - 1.6, 0, 0}, {}}; });
 }
 
 // What is beyond the cells that move is told by the mesh and the motion alone: a run may be resumed anywhere.
@@ -89,12 +106,10 @@ TEST(Wake, OneThatBeginsHereGoesOnLikeOneThatCame) {
 }
 
 TEST(Wake, ToAndFro) {
-    expect_constant_cost(
-        [](double t) {
-            const double turn = 2 * std::numbers::pi * t;
-            return Pose{{1.2 * std::sin(turn), 0.3 * std::cos(2 * turn), 0}, {}};
-        },
-        2);
+    expect_constant_cost([](double t) {
+        const double turn = 2 * std::numbers::pi * t;
+        return Pose{{1.2 * std::sin(turn), 0.3 * std::cos(2 * turn), 0}, {}};
+    });
 }
 
 }  // namespace
