@@ -110,7 +110,7 @@ std::string volumes(const Samples& samples) {
     std::string text =
         fmt::format("\n{:>6} {:>10} {:>10} {:>22}\n", "region", "tets", "prisms", "volume [m^3]");
     for (const auto& [name, sample] : samples)
-        text += fmt::format("{:>6} {:>10} {:>10} {:>22.15e}\n", name, sample.tets, sample.prisms, sample.volume);
+        text += fmt::format("{:>6} {:>10} {:>10} {:>22.12e}\n", name, sample.tets, sample.prisms, sample.volume);
     return text;
 }
 

@@ -67,7 +67,7 @@ TEST(LayerInCase, IsWrittenAsItIsRun) {
 TEST(LayerInCase, WrongValuesAreRefused) {
     const auto layer = [](const std::string& line) { return refusal("[body.layer]\n" + line + "\n"); };
     const std::string place = "case.toml: body[1].layer.";
-    const std::string fits = "; the largest layer that fits is 0.000766 m thick";  // a third of 2.3 mm
+    const std::string fits = "; the largest layer that fits is 0.000762 m thick";  // a third of 2.3 mm, less 0.15 * 0.3^2
     EXPECT_EQ(layer("first_height = -2e-5"), place + "first_height (line 19): must be positive, got -2e-05" + fits);
     EXPECT_EQ(layer("count = 0"), place + "count (line 19): must be a whole number from 1 to 100, got 0");
     EXPECT_EQ(layer("count = 101"), place + "count (line 19): must be a whole number from 1 to 100, got 101");
@@ -85,19 +85,19 @@ TEST(LayerInCase, AGrowthThatOverflowsIsRefusedWithTheLargestThatWouldDo) {
     const std::string infinite = refusal("[body.layer]\ncount = 4\ngrowth = 1e300\n");
     EXPECT_EQ(infinite.substr(0, infinite.find(" at most")),
               "case.toml: body[1].layer.growth (line 20): 1e+300 makes a layer of 4 prisms inf m thick, more than the "
-              "box; the largest layer that fits is 0.000766 m thick:");
-    // sum of 2e-5 g^k, k = 0 ... 3, below 0.766 mm
-    EXPECT_NEAR(std::stod(infinite.substr(infinite.find("at most ") + 8)), 2.95, 0.01);
+              "box; the largest layer that fits is 0.000762 m thick:");
+    // sum of 2e-5 g^k, k = 0 ... 3, below 0.762 mm
+    EXPECT_NEAR(std::stod(infinite.substr(infinite.find("at most ") + 8)), 2.94, 0.01);
     const std::string large = refusal("[body.layer]\ncount = 100\ngrowth = 1.5\n");
     const double advised = std::stod(large.substr(large.find("at most ") + 8));
     SCOPED_TRACE(large);
-    const double room = (3.3e-3 - 1e-3) / 3;  // a third of the gap to the nearest face
+    const double room = (3.3e-3 - 1e-3 - 0.15 * 9e-8 / 1e-3) / 3;  // of the gap to the nearest face
     EXPECT_LE(thickness({.count = 100, .growth = advised}), room);
     EXPECT_GT(thickness({.count = 100, .growth = 1.01 * advised}), room);
     EXPECT_EQ(refusal("[body.layer]\ncount = 100\ngrowth = " + std::to_string(advised) + "\n"), "");
     EXPECT_EQ(refusal("[body.layer]\nfirst_height = 1\n"),
               "case.toml: body[1].layer.first_height (line 19): must be below the size of the box, 0.016 m, "
-              "got 1; the largest layer that fits is 0.000766 m thick");
+              "got 1; the largest layer that fits is 0.000762 m thick");
 }
 
 TEST(RotationInCase, TurnsTheBodyAboutItsCentre) {

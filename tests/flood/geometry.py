@@ -158,7 +158,7 @@ class Scene:
 
     def stands_out(self, body):
         """How far at most the triangulated surface stands out of the shape, which gives it the body's volume [m]."""
-        return 0.15 * self.surface_size(body) ** 2 / body.shape.curvature_radius()
+        return 0.15 * self.surface**2 / body.shape.curvature_radius()
 
     def needed_gaps(self, least_gap):
         """Those to a wall and between two bodies that surely do, `least_gap` sizes between surfaces [m]."""

@@ -180,12 +180,13 @@ TEST(LayeredMesh, RefusesLayersTooThickAndSaysWhatFits) {
     domain.bodies[0].layer = thick;
     expect_error(domain,
                  {"body \"0\": its layer is 0.381 m thick, too much for the gap of 0.3 m to the wall z min",
-                  "the largest layer that fits is 0.1 m thick, by layer.first_height of at most 0.026 m"});
+                  // a third of 0.3 - 0.15 * 0.4^2
+                  "the largest layer that fits is 0.092 m thick, by layer.first_height of at most 0.024 m"});
     domain.bodies[0].layer->first_height = 0.05;  // 0.19: thinned
     EXPECT_EQ(error_of(domain), "");
     domain.bodies[1].layer = LayerOptions{3, 0.15, 1.25, Side::outside, {}};
     expect_error(domain, {"too much for the gap of 0.7 m to body \"1\"",
-                          "fits is 0.1 m thick, by layer.first_height of at most 0.026 m"});  // at the wall, too
+                          "fits is 0.092 m thick, by layer.first_height of at most 0.024 m"});  // at the wall, too
 }
 
 TEST(LayeredMesh, TheLargestLayerThatFitsDoes) {
@@ -215,7 +216,7 @@ TEST(LayeredMesh, RefusesValuesOutOfRange) {
     expect_error(with_layers(one, {3, 0.1, 0, Side::outside, {}}), {"positive layer.growth, got 0"});
     expect_error(with_layers(one, {0, 0.1, 1, Side::outside, {}}), {"layer.count is below 1"});
     expect_error(with_layers(one, {400, 0.001, 1e3, Side::outside, {}}),
-                 {"overflows", "fits is 0.66 m thick, by layer.growth of at most 1"});
+                 {"overflows", "fits is 0.65 m thick, by layer.growth of at most 1"});
 }
 
 TEST(LayeredMesh, RefusesMoreLayersThanThereArePatchesFor) {

@@ -105,9 +105,10 @@ TEST(Columns, GiveWayToABodyWithoutALayerAsToAWall) {
     Domain domain = small_domain({ball({-1.2, 0, 4}, 1), ball({1.2, 0, 4}, 1)});
     domain.bodies[0].layer = LayerOptions{3, 0.1, 1.25, Side::outside, {}};
     domain.bodies[1].layer = LayerOptions{3, 0.1, 1.25, Side::inside, {}};
-    EXPECT_NEAR(layer_thickness(snapshot(domain, 0), 0, false, {-0.2, 0, 4}), 0.4 / 3, 1e-12);
+    const double room = 0.4 - 2 * outward_shift(domain.bodies[0].shape, domain.size.surface);
+    EXPECT_NEAR(layer_thickness(snapshot(domain, 0), 0, false, {-0.2, 0, 4}), room / 3, 1e-12);
     domain.bodies[1].layer->side = Side::both;
-    EXPECT_NEAR(layer_thickness(snapshot(domain, 0), 0, false, {-0.2, 0, 4}), 0.4 / 4, 1e-12);
+    EXPECT_NEAR(layer_thickness(snapshot(domain, 0), 0, false, {-0.2, 0, 4}), room / 4, 1e-12);
 }
 
 TEST(Columns, DependOnThePlaceNotOnTheWayThere) {
