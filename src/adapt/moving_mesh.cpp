@@ -1,13 +1,16 @@
 #include "adapt/moving_mesh.h"
 
 #include "adapt/way.h"
+#include "base/checks.h"
 #include "generate/layers.h"
 #include "mesh/quality.h"
+#include "mesh/verify.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 namespace kropla {
@@ -66,6 +69,13 @@ std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, cons
             cells.push_back(t);
     }
     return cells;
+}
+
+/// In developer and debug builds: throws std::logic_error, which nobody catches, if a step leaves what is no mesh.
+void look_again(const Mesh& mesh, const char* which) {
+    if constexpr (checks)
+        if (const std::string fault = verify(mesh); !fault.empty())
+            throw std::logic_error(std::string("MovingMesh leaves the ") + which + " mesh with " + fault);
 }
 
 }  // namespace
@@ -324,6 +334,8 @@ const Changes& MovingMesh::accept() {
     copy_changed(reference_, current_, replaced_.list(), moved_);
     time_ = target_time_;
     trouble_.clear();
+    look_again(before_, "moved");
+    look_again(reference_, "adapted");
     return statistics_.remeshed;
 }
 

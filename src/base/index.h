@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +24,7 @@ struct Index {
     auto operator<=>(const Index&) const = default;
 };
 
-/// A std::vector that is indexed by one kind of Index only.
+/// A std::vector that is indexed by one kind of Index only; developer and debug builds check that it is there.
 template <class I, class T>
 class Array {
 public:
@@ -31,8 +32,8 @@ public:
     explicit Array(std::size_t size, const T& value = T{}) : items_(size, value) {}
     Array(std::initializer_list<T> items) : items_(items) {}
 
-    T& operator[](I i) { return items_[static_cast<std::size_t>(i.value)]; }
-    const T& operator[](I i) const { return items_[static_cast<std::size_t>(i.value)]; }
+    T& operator[](I i) { return items_[at(i)]; }
+    const T& operator[](I i) const { return items_[at(i)]; }
 
     [[nodiscard]] std::size_t size() const { return items_.size(); }
     [[nodiscard]] bool empty() const { return items_.empty(); }
@@ -61,6 +62,11 @@ public:
     bool operator==(const Array&) const = default;
 
 private:
+    [[nodiscard]] std::size_t at(I i) const {
+        assert(i.exists() && static_cast<std::size_t>(i.value) < items_.size());
+        return static_cast<std::size_t>(i.value);
+    }
+
     std::vector<T> items_;
 };
 

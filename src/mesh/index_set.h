@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -62,9 +63,11 @@ private:
     static std::uint64_t bit_of(I i) { return std::uint64_t{1} << (static_cast<unsigned>(i.value) % 64); }
 
     [[nodiscard]] const Page& page(I i) const {
+        assert(i.exists());
         return pages_[page_of(i) < page_at_.size() ? page_at_[page_of(i)] : 0];
     }
     Page& page_to_fill(I i) {
+        assert(i.exists());
         if (page_of(i) >= page_at_.size()) page_at_.resize(page_of(i) + 1, 0);
         std::uint32_t& at = page_at_[page_of(i)];
         if (at == 0) {

@@ -1,5 +1,6 @@
 #include "base/index.h"
 
+#include "base/checks.h"
 #include "base/random.h"
 
 #include <gtest/gtest.h>
@@ -33,6 +34,13 @@ TEST(Index, NamesNothingByDefault) {
     EXPECT_FALSE(Apple{}.exists());
     EXPECT_TRUE(Apple{0}.exists());
     EXPECT_LT(Apple{1}, Apple{2});
+}
+
+TEST(Array, LooksAtItsIndexInDeveloperBuilds) {
+    if constexpr (!checks) GTEST_SKIP() << "the release build does not look";
+    const Array<Apple, double> weight{0.5, 1.5};
+    EXPECT_DEATH((void)weight[Apple{2}], "at\\(");
+    EXPECT_DEATH((void)weight[Apple{}], "at\\(");
 }
 
 TEST(Array, IsVisitedInOrder) {

@@ -117,6 +117,11 @@ class Reader(unittest.TestCase):
         for code, errors in wrong:
             self.assertEqual(judge.judge(self.case, self.folder, code, errors).outcome, "failed", (code, errors))
 
+    def test_a_gap_that_is_not_there(self):
+        said = 'kropla: at t = 500 ms body "ball" is {} m from the wall z min, too close: R/r 11, limit 10'
+        for gap_told, outcome in ((1.0, "refused: floor"), (0.9, "failed")):
+            self.assertEqual(judge.judge(self.case, self.folder, 3, said.format(gap_told)).outcome, outcome)
+
 
 class Figures(unittest.TestCase):
     def test_of_a_regular_tet(self):

@@ -1,0 +1,96 @@
+"""The cases of cases/ in a short form: coarser, a few steps, from the time on when what they are about happens.
+Frames are verified by tests/flood; the figures of the whole must be within a tenth of what was reached.
+
+    cases_test.py KROPLA [CASE ...]
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "flood"))
+import judge
+from case_file import Case
+
+CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
+
+
+@dataclass
+class Short:
+    """From `start` [s] for `steps` of the case's own; bounds: what was reached and a tenth of its distance from what is
+    perfect (3 for R/r, 70.5 degrees for the least angle)."""
+
+    start: float
+    steps: int
+    worst_ratio: float
+    least_dihedral: float  # [degrees]
+    surface: float = 4e-4  # [m]
+
+
+SHORT = {
+    "droplet": Short(0.0, 5, 6, 20),
+    "droplet_layer": Short(0.0, 5, 6, 20),
+    "near_miss": Short(0.004, 5, 6, 20),
+    "near_wall": Short(0.0038, 6, 6, 20),
+    "quick": Short(0.0, 5, 6, 20),
+    "tumbling": Short(0.0, 5, 6, 20, 3.4e-4),
+    "two_droplets": Short(0.004, 5, 6, 20),
+}
+CONSERVED = 1e-12  # [-] energy and volumes over the whole run, and each transfer: rounding
+
+
+def shortened(text, short):
+    """The text of the case that begins at `short.start`, and its number of steps."""
+    end, steps = (float(re.search(rf"^{key}\s*=\s*(\S+)", text, re.M)[1]) for key in ("end", "steps"))
+
+    def later(match):
+        return re.sub(r"\bt\b", f"(t + {short.start!r})", match[0])
+
+    text = re.sub(r'^(x|y|z|angle)\s*=\s*".*?"', later, text, flags=re.M)
+    for key, value in {"end": end / steps * short.steps, "steps": short.steps, "surface": short.surface,
+                       "far": max(8e-4, 3 * short.surface)}.items():
+        text = re.sub(rf"^{key}\s*=\s*\S+", f"{key} = {value!r}", text, count=1, flags=re.M)
+    return text + ("" if "[output]" in text else f"\n[output]\nevery = {short.steps}\n")
+
+
+def verdict_on(program, name):
+    with tempfile.TemporaryDirectory() as folder:
+        file, out = pathlib.Path(folder) / "case.toml", pathlib.Path(folder) / "out"
+        file.write_text(shortened((CASES / f"{name}.toml").read_text(encoding="utf-8"), SHORT[name]), encoding="utf-8")
+        done = subprocess.run([program, "run", file, "--out", out], capture_output=True, text=True, check=False)
+        return judge.judge(Case(file), out, done.returncode, done.stderr), judge.rows_of(out)
+
+
+def faults_of(name, verdict, rows):
+    short = SHORT[name]
+    worst = max([verdict.worst_ratio] + [float(row["max_aspect_ratio"]) for row in rows])
+    angle = min([verdict.least_dihedral] + [float(row["min_dihedral [deg]"]) for row in rows])
+    print(f"{name}: {verdict.cells} cells, worst R/r {worst:.3f}, least dihedral {angle:.2f} degrees, transfer error "
+          f"{verdict.transfer_error:.1e}, energy {verdict.energy_drift:.1e}, volumes {verdict.volume_drift:.1e}")
+    faults = list(verdict.faults)
+    if len(rows) != short.steps:
+        faults.append(f"{len(rows)} steps instead of {short.steps}")
+    bounded = (("worst R/r", worst, short.worst_ratio), ("energy", verdict.energy_drift, CONSERVED),
+               ("transfer error", verdict.transfer_error, CONSERVED), ("volumes", verdict.volume_drift, CONSERVED),
+               ("angle below the bound", short.least_dihedral - angle, 0))
+    for what, value, bound in bounded:
+        if not value <= bound:
+            faults.append(f"{what}: {value}, above {bound}")
+    return faults
+
+
+def main():
+    program, names = sys.argv[1], sys.argv[2:] or list(SHORT)
+    missing = {path.stem for path in CASES.glob("*.toml")} ^ set(SHORT)
+    faults = [f"{name}: not both a case and a short form" for name in missing]
+    for name in names:
+        faults += [f"{name}: {fault}" for fault in faults_of(name, *verdict_on(program, name))]
+    print("\n".join(faults))
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
