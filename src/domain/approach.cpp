@@ -71,11 +71,7 @@ double gap_at(const Domain& domain, const Approach& pair, double time) {
 }
 
 double stand_out(const Domain& domain, const Approach& approach) {
-    const auto of = [&](std::size_t body) {
-        const Body& one = domain.bodies[body];
-        const Snapshot alone{domain.box, domain.size, {one.shape}, {one.layer}};
-        return outward_shift(one.shape, surface_size(alone, 0));
-    };
+    const auto of = [&](std::size_t body) { return outward_shift(domain.bodies[body].shape, domain.size.surface); };
     return of(approach.body) + (approach.wall < 0 ? of(approach.other) : 0);
 }
 
