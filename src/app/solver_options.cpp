@@ -45,7 +45,7 @@ bool asked_on_the_way(const std::string& name) {
 bool asked_at_the_end(const std::string& name) {
     constexpr std::array<std::string_view, 12> last = {
         "-options_left", "-options_view", "-malloc_dump",  "-malloc_view", "-malloc_test", "-memory_view",
-        "-objects_dump", "-log_view",     "-log_all", "-log", "-log_trace",  "-log_view_memory"};
+        "-objects_dump", "-log_view",     "-log_all",     "-log",         "-log_trace",   "-log_view_memory"};
     return std::ranges::find(last, name) != last.end();
 }
 
@@ -77,9 +77,9 @@ std::string meant(const std::string& name) {
     return fmt::format("; did you mean \"{}{}\"?", of_potential ? potential : "-", nearest);
 }
 
-bool used(const SolverOption& option) {
+bool used(const SolverOption& option) {  // PETSc lists them without the dash
     PetscBool asked = PETSC_FALSE;
-    check(PetscOptionsUsed(nullptr, option.name.c_str(), &asked));
+    check(PetscOptionsUsed(nullptr, option.name.c_str() + 1, &asked));
     return asked == PETSC_TRUE || asked_at_the_end(option.name);
 }
 

@@ -93,8 +93,10 @@ TEST(RunHeat, OptionsOfTheSolverThatAreWrongEndWithTwo) {
 TEST(RunHeat, OptionsOfAllKindsReachTheSolver) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(1));
-    for (const char* options : {"-ksp_type bcgs -ksp_rtol 1e-10 -sub_pc_factor_levels 1", "-pc_type gamg -mg_levels_ksp_max_it 3",
-                                "-potential_pc_type icc -potential_ksp_rtol 1e-12", "-pc_type hypre -pc_hypre_boomeramg_relax_type_all Jacobi",
+    for (const char* options : {"-ksp_type bcgs -ksp_rtol 1e-10 -sub_pc_factor_levels 1",
+                                "-pc_type gamg -mg_levels_ksp_max_it 3 -ksp_converged_reason -log_view",
+                                "-potential_pc_type icc -potential_ksp_rtol 1e-12",
+                                "-pc_type hypre -pc_hypre_boomeramg_relax_type_all Jacobi",
                                 "-potential_pc_hypre_boomeramg_strong_threshold 0.25"}) {
         SCOPED_TRACE(options);
         std::filesystem::remove_all(folder.path / "d");
