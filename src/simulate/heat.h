@@ -126,7 +126,7 @@ struct HeatReport {
 /// several faces with values, the first of them holds. All ranks call it together with the same arguments,
 /// and all get the whole field. The solver's options are -ksp_type, -ksp_rtol, -pc_type and so on. Throws
 /// CaseError as check_heat, or if dt is not positive or a quantity not finite; SolverError if the solver does
-/// not converge. Then `temperature` is untouched.
+/// not converge, Interrupted if the watch of the ranks says so. Then `temperature` is untouched.
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt);
 

@@ -8,6 +8,7 @@
 #include "simulate/heat_cell.h"
 #include "simulate/solver.h"
 #include "simulate/step_mean.h"
+#include "simulate/stop.h"
 #include "simulate/surface_flux.h"
 
 #include <algorithm>
@@ -246,6 +247,7 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
                         .source = mean_sources(in_time, options),
                         .dt = dt};
     const LinearSystem system = heat_system(step, cells, numbering, ranks, boundary);
+    heed(ranks);  // a rank that was stopped in there is met before anything is done together
     const SolverChoice choice{.name = "heat", .preconditioner = preconditioner_for(ranks, system)};
     const Solution solution = solve(ranks, system, choice);
     Array<Vertex, double> after = temperature.values;

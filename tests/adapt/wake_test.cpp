@@ -93,7 +93,7 @@ TEST(Wake, ToAndFro) {
     expect_constant_cost(
         [](double t) {
             const double turn = 6 * std::numbers::pi * t;  // three rounds
-            return Pose{{0.5 * std::sin(turn), 0.2 * std::cos(2 * turn), 0}, {}};
+            return Pose{{0.3 * std::sin(turn), 0.1 * std::cos(2 * turn), 0}, {}};
         },
         36, 12, 12, 2);
 }

@@ -155,7 +155,7 @@ TEST(Program, EndsWithSixIfThereIsNotEnoughMemory) {
     const TemporaryFolder folder;
     write(folder.path / "fine.toml", replaced(replaced(starting_case(), "surface = 2e-4", "surface = 4e-5"),
                                               "far     = 8e-4", "far     = 8e-5"));
-    const std::string line = "cd '" + folder.path.string() + "' && ulimit -v 400000 && '" KROPLA_PROGRAM
+    const std::string line = "cd '" + folder.path.string() + "' && ulimit -v 250000 && '" KROPLA_PROGRAM
                              "' mesh fine.toml -o m.vtu >out.txt 2>err.txt";
     const int status = std::system(line.c_str());
     EXPECT_EQ(WEXITSTATUS(status), 6);
