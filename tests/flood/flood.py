@@ -2,8 +2,8 @@
 
     flood.py PROGRAM [--cases N] [--seed S] [--first I] [--replay FILE ...] [--failed DIR] [--markdown]
 
-A case ends with exit 0 and its floors and balances, or is refused for a reason that is true. What fails is left
-behind in DIR as NNN.toml, with what was wrong on top; --replay runs such files again. docs/reliability.md tells more.
+A case ends with exit 0 and its floors and balances, or is refused for a reason that is true. What fails or is
+refused is left behind in DIR as NNN.toml, with what was wrong on top; --replay runs such files again. docs/reliability.md tells more.
 """
 
 import argparse
@@ -79,11 +79,11 @@ def one(job):
 
 
 def keep(folder, seed, name, text, verdict):
-    """Leaves a failed case behind."""
+    """Leaves behind a case that failed or was refused."""
     folder.mkdir(parents=True, exist_ok=True)
-    wrong = [f"# {line}" for fault in verdict.faults[:12] for line in fault.splitlines()]
+    wrong = [f"# {line}" for fault in verdict.faults[:12] or [verdict.said] for line in fault.splitlines()]
     body = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
-    lines = [f"# flood, seed {seed}: what was wrong", *wrong, body, ""]
+    lines = [f"# flood, seed {seed}: {verdict.outcome}", *wrong, body, ""]
     (folder / name).write_text("\n".join(lines), encoding="utf-8")
 
 
@@ -184,9 +184,9 @@ def main():
     with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
         for name, text, verdict, taken, wall in pool.map(one, jobs):
             table.add(text, verdict, taken)
-            if verdict.outcome == "failed":
+            if verdict.outcome != "done":
                 keep(arguments.failed, arguments.seed, name, text, verdict)
-            told = "; ".join(verdict.faults[:2])
+            told = "; ".join(verdict.faults[:2]) or verdict.said.strip()
             print(f"{name}  {verdict.outcome}  {verdict.cells} cells  {taken:.1f} s CPU, {wall:.1f} s  {told}"[:400],
                   flush=True)
     print(table.written(arguments.markdown))

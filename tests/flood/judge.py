@@ -23,6 +23,7 @@ class Verdict:
 
     outcome: str
     faults: list = field(default_factory=list)
+    said: str = ""  # on stderr
     worst_ratio: float = 0.0
     least_dihedral: float = 180.0  # [degrees]
     cells: int = 0
@@ -173,7 +174,7 @@ def too_thick(scene, body, gap):
 
 def judge(case, folder, code, errors):
     """The verdict on a run that ended with `code` and these lines on stderr."""
-    verdict = Verdict("done")
+    verdict = Verdict("done", said=errors)
     lines = errors.splitlines()
     if code == 0:
         verdict.faults += [f"said on stderr: {line}" for line in lines if not line.startswith("kropla: ")]
