@@ -31,10 +31,10 @@ inline std::string leaping_case() {
     return replaced(text, "far     = 8e-4", "far     = 1e-3");
 }
 
-/// A droplet that falls until 0.19 of an edge are left above the bottom: for the least of all floors too narrow.
+/// A droplet that falls until 0.18 of an edge are left above the bottom: for the least of all floors too narrow.
 inline std::string landing_case() {
     const std::string text = replaced(leaping_case(), "0.002,  0.002, 0.009", "0.002,  0.002, 0.004");
-    return replaced(replaced(text, "0.0072", "0.002"), "-5*t", "-0.885*t") + "[quality]\nmax_aspect_ratio = 5\n";
+    return replaced(replaced(text, "0.0072", "0.002"), "-5*t", "-0.838*t") + "[quality]\nmax_aspect_ratio = 5\n";
 }
 
 /// The frames of a run's folder, by name.

@@ -140,7 +140,7 @@ TEST(Placement, AdvisesASizeThatDoesForAllBodies) {
     domain.bodies.push_back(body("drop2", ball({0, 0, 10.96875}, 1)));
     EXPECT_EQ(placement(domain),
               "body \"droplet\" and body \"drop2\" are 0.0312 m apart, too close for size.surface = 0.2 m; at most "
-              "0.062 m would do");
-    domain.size.surface = 0.062;
+              "0.06 m would do");
+    domain.size.surface = 0.06;
     EXPECT_EQ(placement(domain), "");
 }
