@@ -57,7 +57,7 @@ std::string clock_time(double seconds) {
 
 std::string spoken_count(double count) {
     std::string text = fmt::format("{:.0f}", count);
-    for (std::ptrdiff_t i = std::ssize(text) - 3; i > 0; i -= 3) text.insert(static_cast<std::size_t>(i), ",");
+    for (std::ptrdiff_t i = std::ssize(text) - 3; i > 0; i -= 3) text.insert(static_cast<std::size_t>(i), 1, ',');
     return text;
 }
 

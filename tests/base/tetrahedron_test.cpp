@@ -73,8 +73,9 @@ TEST(TetShape, FourAtOnceHaveTheBitsOfEach) {
             ASSERT_EQ(ratios[i], ratio) << "round " << round;
             ASSERT_EQ(by_place[i], ratio) << "round " << round;
             ASSERT_EQ(again[i], ratio) << "round " << round;
-            if (std::isfinite(ratio))
+            if (std::isfinite(ratio)) {
                 ASSERT_EQ(energies[i], tet_volume(a, b, c, d) * (ratio * ratio) * (ratio * ratio)) << "round " << round;
+            }
         }
     }
 }
