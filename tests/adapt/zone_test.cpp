@@ -104,8 +104,9 @@ TEST(Zone, OnlyVerticesWithAllTheirCellsInTheZoneAreFree) {
             const bool complete = zone.ball[v].size() == whole.size();
             const bool may_move = !freedom(constraint(mesh, v, whole)).none();
             EXPECT_EQ(!freedom(zone, v).none(), complete && may_move) << "vertex " << v.value;
-            if (!constraint(mesh, v, whole).on_interface)
+            if (!constraint(mesh, v, whole).on_interface) {
                 EXPECT_EQ((zone.axes[v] & Zone::rim) != 0, !complete) << "vertex " << v.value;
+            }
             if (may_move) ++(complete ? free : rim);
         }
     }
