@@ -147,10 +147,11 @@ struct Allowed {
     PathLook seen;
 };
 Allowed look_at_all(const Case& it, const Watch* watch) {
-    const double least = hopeless_share * doubtful_gap(it.quality.max_aspect_ratio);
+    const double sure = doubtful_gap(it.quality.max_aspect_ratio), least = hopeless_share * sure;
     Allowed all{surface_limit(it.domain, 0, least_gap_in_sizes), look(it, watch)};
     for (const Approach& gap : all.seen.closest) {
-        const SizeLimit on_way = limit_of(it.domain, gap, least);
+        if (size_for_gap(it.domain, gap, least) >= it.domain.size.surface) continue;
+        const SizeLimit on_way = limit_of(it.domain, gap, sure);  // what is advised shall really do
         if (on_way.most < all.limit.most) all.limit = on_way;
     }
     return all;
