@@ -209,7 +209,9 @@ TEST(MoveBoundary, ABodyThatComesBackIsTheSameBitForBit) {
             if (i % lap != 0) continue;
             std::vector<Vec3> here;
             for (Vertex v : bodies.front()) here.push_back(mesh.position[v]);
-            if (i > 0) ASSERT_EQ(here, seen) << "step " << i;
+            if (i > 0) {
+                ASSERT_EQ(here, seen) << "step " << i;
+            }
             seen = std::move(here);
         }
     }

@@ -129,8 +129,12 @@ TEST(HeatScale, AnyStepIsSolved) {
             SCOPED_TRACE(testing::Message() << "conductivity " << conductivity << ", dt 1e" << decade);
             const NodalField field = conducted({1, 1, 1}, {conductivity, 1, 1}, std::pow(10, decade));
             const auto [least, most] = std::ranges::minmax(field.values);
-            if (decade == 10) EXPECT_LT((most - least) / most, 1e-8);  // of one temperature all over
-            if (decade == -10 && conductivity == 1) EXPECT_GT(most - least, 2200 * (1 - 1e-6));
+            if (decade == 10) {  // of one temperature all over
+                EXPECT_LT((most - least) / most, 1e-8);
+            }
+            if (decade == -10 && conductivity == 1) {
+                EXPECT_GT(most - least, 2200 * (1 - 1e-6));
+            }
         }
     }
 }

@@ -88,7 +88,9 @@ TEST(NarrowGap, AClusterGrowsAlongTheGapUntilItOpens) {
         EXPECT_NEAR(field_integral(mesh.after, fresh, surroundings), before, 1e-14) << "seed " << seed;
         EXPECT_LE(report.beyond, 1e-12) << "seed " << seed;
         for (Vertex v : all_vertices(mesh.after))
-            if (on_interface(mesh.after, v)) EXPECT_EQ(fresh[v], old[v]);
+            if (on_interface(mesh.after, v)) {
+                EXPECT_EQ(fresh[v], old[v]);
+            }
     }
 }
 
