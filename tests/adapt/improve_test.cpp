@@ -38,8 +38,8 @@ TEST(Improve, NeverRaisesTheWorstAndUsesAllOperators) {
         EXPECT_EQ(count_vertices(mesh) - count_vertices(before), changes.splits - changes.collapses);
         all += changes;
     }
-    EXPECT_GE(all.swaps, 1);
-    EXPECT_GE(all.moved, 1);
+    EXPECT_GE(all.swaps, 300);
+    EXPECT_GE(all.moved, 520);
     EXPECT_GE(all.cells_replaced, all.swaps);
 }
 
@@ -61,7 +61,7 @@ TEST(Improve, NeverRaisesTheWorstOfAnyPart) {
         helped += !changes.vertices.empty() || changes.cells_replaced > 0;
     }
     EXPECT_GE(asked, 500);
-    EXPECT_GE(helped, 1);
+    EXPECT_GE(helped, 5);
     EXPECT_LT(worst, at_start);
 }
 
@@ -88,7 +88,7 @@ TEST(Improve, RetriangulatesClustersWhereNothingElseHelps) {
         left += count_bad(other);
         left_with_clusters += count_bad(mesh);
     }
-    EXPECT_GE(clusters, 1);
+    EXPECT_GE(clusters, 14);
     EXPECT_LT(left_with_clusters, left);
 }
 
@@ -108,7 +108,7 @@ TEST(Improve, LeavesGoodCellsAndNamesTheChangedVertices) {
         EXPECT_TRUE(std::ranges::find(changes.vertices, v) != changes.vertices.end()) << v.value;
         ++changed;
     }
-    EXPECT_GE(changed, 1);
+    EXPECT_GE(changed, 16);
 }
 
 TEST(OptimisePlaces, MovesVerticesOnly) {
@@ -124,7 +124,7 @@ TEST(OptimisePlaces, MovesVerticesOnly) {
         EXPECT_EQ(verify(mesh), "");
         EXPECT_TRUE(same(properties(mesh), properties(before)));
         EXPECT_LT(worst_of(mesh), worst_of(before));
-        EXPECT_GE(changes.moved, 1);
+        EXPECT_GE(changes.moved, 190);
         EXPECT_GE(changes.smoothing_sweeps, 1);
         EXPECT_EQ(changes.cells_replaced, 0);
         int moved = 0;
@@ -134,7 +134,7 @@ TEST(OptimisePlaces, MovesVerticesOnly) {
             EXPECT_TRUE(std::ranges::find(changes.vertices, v) != changes.vertices.end()) << v.value;
             ++moved;
         }
-        EXPECT_GE(moved, 1);
+        EXPECT_GE(moved, 190);
     }
 }
 

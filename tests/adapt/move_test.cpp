@@ -57,10 +57,10 @@ TEST(SafeFraction, AgreesWithSamplingTheWay) {
         }
         // Just there, and not before, the volume falls to the least; the fraction is found to 2^-16.
         EXPECT_GE(volume_on_the_way(mesh, displacement, fraction), kept * (1 - 1e-9));
-        EXPECT_NEAR(volume_on_the_way(mesh, displacement, fraction), kept, 1e-3);
+        EXPECT_NEAR(volume_on_the_way(mesh, displacement, fraction), kept, 7.3e-6);
     }
     EXPECT_GE(stopped, 50);
-    EXPECT_GE(arrived, 50);
+    EXPECT_GE(arrived, 200);
 }
 
 TEST(SafeFraction, SeesACellThatOnlyTouchesZero) {
@@ -73,7 +73,7 @@ TEST(SafeFraction, SeesACellThatOnlyTouchesZero) {
     const double fraction = safe_fraction_of(mesh, displacement, 0);
     EXPECT_LE(fraction, 0.5);
     EXPECT_GE(fraction, 0.5 - 1e-4);
-    EXPECT_NEAR(safe_fraction_of(mesh, displacement, 0.25), 0.25, 1e-4);
+    EXPECT_NEAR(safe_fraction_of(mesh, displacement, 0.25), 0.25, 1.7e-5);
 }
 
 TEST(SafeFraction, IsTheWholeWayWithoutMotionOrAllTogether) {
@@ -90,7 +90,7 @@ TEST(SafeFraction, IsTheLeastOfAllCells) {
     Array<Vertex, Vec3> displacement(mesh.position.size());
     displacement[Vertex(0)] = {2, 0, 0};  // through the facets at (1, 0, 0): their tets are flat half-way
     const double fraction = safe_fraction_of(mesh, displacement, 0);
-    EXPECT_NEAR(fraction, 0.5, 1e-4);
+    EXPECT_NEAR(fraction, 0.5, 1.7e-5);  // it is found to 2^-16
     double least = 1;
     for (Tet t : all_tets(mesh)) least = std::min(least, safe_fraction(mesh, {&t, 1}, displacement, 0));
     EXPECT_EQ(fraction, least);
@@ -145,7 +145,7 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
             EXPECT_TRUE(zone.has.contains(v));
             ++free_moved;
         }
-        EXPECT_GE(free_moved, 20);
+        EXPECT_GE(free_moved, 190);
         for (Tet t : zone.cells) EXPECT_EQ(mesh.region[t], surroundings);
         const auto old_shape = properties(before), new_shape = properties(mesh);
         EXPECT_TRUE(same(new_shape, old_shape));  // all volumes to 1e-12 of the box's
@@ -180,8 +180,7 @@ TEST(MoveBoundary, AtRestNothingMoves) {
     const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
     Zone zone;
     EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 1, zone).arrived);
-    for (Vertex v : all_vertices(mesh)) EXPECT_LE(distance(mesh.position[v], before.position[v]), 1e-15);
-    for (Vertex v : bodies.front()) EXPECT_EQ(mesh.position[v], before.position[v]);
+    for (Vertex v : all_vertices(mesh)) EXPECT_EQ(mesh.position[v], before.position[v]);
 }
 
 // Places of the body come from the places before, step by step; nothing may add up on the way.

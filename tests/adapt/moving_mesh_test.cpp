@@ -146,6 +146,7 @@ TEST(MovingMesh, AnAttemptDoesNotTouchTheReference) {
 TEST(MovingMesh, AcceptNamesEveryVertexThatIsNewOrWasMoved) {
     const Domain domain = crossing_sphere();
     MovingMesh moving(domain, improved_mesh(domain, 2), 0);
+    int inserted = 0, moved = 0;
     for (int i = 0; i < 5; ++i) {
         moving.begin_step();
         moving.refine();
@@ -158,8 +159,11 @@ TEST(MovingMesh, AcceptNamesEveryVertexThatIsNewOrWasMoved) {
             const bool known = v.value < static_cast<int>(before.position.size()) && alive(before, v);
             if (known && before.position[v] == after.position[v]) continue;
             EXPECT_TRUE(std::ranges::find(changed, v) != changed.end()) << v.value;
+            ++(known ? moved : inserted);
         }
     }
+    EXPECT_GE(inserted, 1);
+    EXPECT_GE(moved, 1);
 }
 
 TEST(MovingMesh, RefusesAGiantStepAndSaysWhy) {
@@ -184,7 +188,7 @@ TEST(MovingMesh, RefusesAGiantStepAndSaysWhy) {
     EXPECT_EQ(moving.time(), 0);
 
     moving.begin_step();
-    EXPECT_GT(moving.refine().cells.size() + moving.refine().vertices.size(), 0u);  // it knows where it stuck
+    EXPECT_GT(moving.refine().cells.size() + moving.refine().vertices.size(), 21u);  // it knows where it stuck
     moving.move_boundary(1.0 / 30);
     moving.optimise();
     EXPECT_FALSE(moving.refusal());
@@ -257,11 +261,12 @@ TEST(MovingMesh, OneThatBeginsHereGoesOnLikeOneThatCame) {
                   {travelling({-2, 0, 0}, {2, 0.3, 0}, {0.2, 0.2, 0.2})},
                   {0.1, 0.3, 0.4}};
     MovingMesh came(domain, improved_mesh(domain, 1), 0);
-    int touched = 0;
+    int touched = 0, refused = 0;
     for (int i = 0; i < 24; ++i) {
         MovingMesh begins(domain, came.reference(), came.time());
-        const double dt = i % 8 == 7 ? 0.15 : 0.03;  // some so large that they are refused or go in legs
+        const double dt = i % 8 == 7 ? 0.4 : 0.03;  // some so large that they are refused
         const int attempts = step(came, dt);
+        refused += attempts > 1;
         EXPECT_EQ(step(begins, dt), attempts);
         ASSERT_EQ(came.time(), begins.time()) << "step " << i;
         ASSERT_EQ(came.reference(), begins.reference()) << "step " << i;
@@ -270,6 +275,7 @@ TEST(MovingMesh, OneThatBeginsHereGoesOnLikeOneThatCame) {
     }
     EXPECT_LT(touched, 0.8 * count_tets(came.reference()));
     EXPECT_GT(came.time(), 0.6);
+    EXPECT_GE(refused, 1);
 }
 
 TEST(MovingMesh, AStepBeginsWithThreeEqualMeshes) {
@@ -286,7 +292,7 @@ TEST(MovingMesh, AStepBeginsWithThreeEqualMeshes) {
         }
         moving.begin_step();
         expect_three_equal_meshes(moving);
-        EXPECT_GT(remeshed, 100);
+        EXPECT_GT(remeshed, 2000);
     }
 }
 
@@ -311,7 +317,7 @@ TEST(MovingMesh, AfterRefusalsTooAStepBeginsWithThreeEqualMeshes) {
         moving.begin_step();
         expect_three_equal_meshes(moving);
     }
-    EXPECT_GT(refined, 0);
+    EXPECT_GT(refined, 90);
 }
 
 /// How often a step over `way` [m] of the crossing sphere's is refused before it succeeds, at the same dt.

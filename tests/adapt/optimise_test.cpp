@@ -55,8 +55,8 @@ TEST(OptimisePlacesOfAZone, HeldVerticesStayAndOthersSlide) {
         ++moved;
         on_walls += std::ranges::count(free.along, true) < 3;
     }
-    EXPECT_GE(moved, 50);
-    EXPECT_GE(on_walls, 10);
+    EXPECT_GE(moved, 190);
+    EXPECT_GE(on_walls, 99);
 }
 
 TEST(OptimisePlacesOfAZone, TakesNoCellNearTheFloorIfNoneIs) {
@@ -83,7 +83,7 @@ TEST(OptimisePlacesOfAZone, LeavesFewBadCellsAndKnowsTheirRatios) {
         const auto bad_before = std::ranges::count_if(zone.cells, is_bad);
         const double worst_before = zone.ratio[std::ranges::max(zone.cells, {}, ratio)];
         EXPECT_TRUE(optimise_places(zone, mesh, options));
-        EXPECT_LT(4 * std::ranges::count_if(zone.cells, is_bad), 3 * bad_before);
+        EXPECT_LT(11 * std::ranges::count_if(zone.cells, is_bad), bad_before);
         EXPECT_LT(zone.ratio[std::ranges::max(zone.cells, {}, ratio)], worst_before);
         write_places(zone, mesh);
         EXPECT_EQ(verify(mesh), "");
@@ -112,7 +112,7 @@ TEST(OptimisePlacesOfAZone, EqualisesVolumes) {
     };
     const double before = mean_ratio();
     EXPECT_TRUE(optimise_places(zone, mesh, AdaptOptions{}));
-    EXPECT_LT(mean_ratio(), 0.97 * before);
+    EXPECT_LT(mean_ratio(), 0.33 * before);
 }
 
 TEST(OptimisePlacesOfAZone, SameBitsForAnyNumberOfThreads) {
@@ -154,7 +154,7 @@ TEST(Improve, SameBitsForAnyNumberOfThreads) {
         const auto improved = [&] {
             Mesh result = mesh;
             const Changes changes = improve(result, all_tets(mesh), snapshot(sphere_in_box(), 0));
-            EXPECT_GT(changes.swaps, 10);
+            EXPECT_GT(changes.swaps, 58);
             return result;
         };
         const Mesh by_one = with_threads(1, improved);

@@ -107,10 +107,10 @@ TEST(ClusterRemesh, KeepsAllButTheInsideOfTheCluster) {
             grown += cavity->removed.size() > cluster.size() ? 1 : 0;
         }
     }
-    EXPECT_GE(done[0], 10);
-    EXPECT_GE(done[1], 1);
+    EXPECT_GE(done[0], 21);
+    EXPECT_GE(done[1], 10);
     EXPECT_GE(grown, 1);
-    EXPECT_GE(at_box, 5);
+    EXPECT_GE(at_box, 21);
 }
 
 const Snapshot wide_box{{{-9, -9, -9}, {9, 9, 9}}, {9, 0, 9}, {}};  // no room for points in small clusters
@@ -188,7 +188,7 @@ TEST(Repair, BringsSpoiltCellsBelowTheFloor) {
         EXPECT_TRUE(same_shape(properties(mesh), before));
         local += changes.local_remeshes;
     }
-    EXPECT_GE(local, 4);
+    EXPECT_GE(local, 9);
 }
 
 TEST(Repair, LeavesAGoodMeshAlone) {

@@ -123,7 +123,7 @@ TEST(SmoothGuarded, NeverWorsensTheWorstOfABall) {
             return !smooth_guarded(mesh, {&v, 1}, weights).empty();
         };
         const int moved = moves_of_random_balls(move, worst_of_ball, 0);
-        EXPECT_GE(moved, 50);   // it did happen
+        EXPECT_GE(moved, 200);   // it did happen
         EXPECT_LE(moved, 290);  // and so did its refusal
     }
 }

@@ -64,8 +64,8 @@ void expect_constant_cost(Motion motion, int steps, int first, int window, std::
     };
     EXPECT_GT(work_per_way(first), 0);
     EXPECT_LE(work_per_way(steps - window), 1.5 * work_per_way(first));
-    EXPECT_NEAR(count_vertices(moving.reference()), count_vertices(start), 0.15 * count_vertices(start));
-    EXPECT_LE(misfits(moving.reference(), snapshot(domain, 1)), misfits_at_start + 0.02);
+    EXPECT_NEAR(count_vertices(moving.reference()), count_vertices(start), 0.07 * count_vertices(start));
+    EXPECT_LE(misfits(moving.reference(), snapshot(domain, 1)), misfits_at_start + 5e-4);
 }
 
 TEST(Wake, CellsLeftBehindAreCoarsenedAndThoseAheadRefined) {
@@ -86,7 +86,7 @@ TEST(Wake, OneThatBeginsHereGoesOnLikeOneThatCame) {
         for (Tet t : cost.changes.cells)
             far_away += alive(came.reference(), t) && distance(centroid(came.reference(), t), centre) > 1;
     }
-    EXPECT_GE(far_away, 20);  // the motion is felt 0.8 away at most
+    EXPECT_GE(far_away, 2700);  // the motion is felt 0.8 away at most
 }
 
 TEST(Wake, ToAndFro) {

@@ -75,14 +75,14 @@ TEST(SafeFraction, OfAPrismAgreesWithSamplingTheWay) {
             if (jacobian_on_the_way(from, to, double(i) / samples) <= 0) first_bad = i;
         if (first_bad <= samples) {
             EXPECT_LE(fraction, double(first_bad) / samples);
-            EXPECT_NEAR(jacobian_on_the_way(from, to, fraction), 0, 0.01);
+            EXPECT_NEAR(jacobian_on_the_way(from, to, fraction), 0, 2.1e-4);
             ++stopped;
         } else if (fraction == 1) {
             ++arrived;
         }
     }
-    EXPECT_GE(stopped, 50);
-    EXPECT_GE(arrived, 50);
+    EXPECT_GE(stopped, 93);
+    EXPECT_GE(arrived, 170);
 }
 
 /// An ellipsoid with a layer on both sides that turns by `angle` until t = 1.
@@ -123,7 +123,7 @@ TEST(MovingMesh, NoCellOfAnyKindIsTurnedOverOnItsWay) {
     for (const double degrees : {10.0, 20.0, 40.0, 60.0, 90.0, 120.0, 150.0, 170.0, 180.0, 10.0})
         ++(attempt(moving, degrees / 360) ? accepted : refused);
     EXPECT_GE(accepted, 3);
-    EXPECT_GE(refused, 2);
+    EXPECT_GE(refused, 5);
 }
 
 TEST(MovingMesh, AHalfTurnInOneStepIsRefused) {
@@ -139,7 +139,7 @@ TEST(MovingMesh, AHalfTurnInOneStepIsRefused) {
     EXPECT_NE(refusal->why.find("\"top\""), std::string::npos) << refusal->why;
     EXPECT_NE(refusal->why.find("180 degrees"), std::string::npos) << refusal->why;
     const double most = std::acos(2 * least_volume_kept - 1);
-    EXPECT_NEAR(refusal->advised_dt, most / std::numbers::pi, 1e-6);
+    EXPECT_NEAR(refusal->advised_dt, most / std::numbers::pi, 1e-12);
     EXPECT_EQ(moving.current(), start);
     moving.refuse();
     EXPECT_TRUE(attempt(moving, 0.1));

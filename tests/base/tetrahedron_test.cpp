@@ -103,14 +103,14 @@ TEST(TetShape, RadiiByTheirDefinition) {
         const Corners t = random_tet(random);
         const Vec3 centre = tet_circumcentre(t[0], t[1], t[2], t[3]);
         const double radius = distance(centre, t[0]);
-        for (const Vec3& p : t) EXPECT_NEAR(distance(centre, p) / radius, 1, 1e-8);
+        for (const Vec3& p : t) EXPECT_NEAR(distance(centre, p) / radius, 1, 1e-14);
         const auto area = [&](int a, int b, int c) {
             const auto at = [&](int k) { return t[static_cast<std::size_t>(k)]; };
             return norm(cross(at(b) - at(a), at(c) - at(a))) / 2;
         };
         const double areas = area(1, 2, 3) + area(0, 2, 3) + area(0, 1, 3) + area(0, 1, 2);
         const double inradius = 3 * volume(t) / areas;
-        EXPECT_NEAR(aspect_ratio(t) * inradius / radius, 1, 1e-8) << i << " of seed " << seed;
+        EXPECT_NEAR(aspect_ratio(t) * inradius / radius, 1, 1e-14) << i << " of seed " << seed;
     }
 }
 
@@ -119,7 +119,7 @@ TEST(TetShape, GradientIsTheSlope) {
     for (int i = 0; i < 1000; ++i) {
         const Corners t = random_tet(random);
         const auto [value, gradient] = tet_aspect_gradient(t[0], t[1], t[2], t[3]);
-        EXPECT_NEAR(value / aspect_ratio(t), 1, 1e-9);
+        EXPECT_NEAR(value / aspect_ratio(t), 1, 6e-13);
         if (value > 100) continue;  // too steep for differences
         const double h = 1e-6;
         for (int axis = 0; axis < 3; ++axis) {
@@ -127,7 +127,7 @@ TEST(TetShape, GradientIsTheSlope) {
             after[0][axis] += h;
             before[0][axis] -= h;
             const double slope = (aspect_ratio(after) - aspect_ratio(before)) / (2 * h);
-            EXPECT_NEAR(gradient[axis], slope, 1e-4 * (norm(gradient) + 1)) << i << " of seed " << seed;
+            EXPECT_NEAR(gradient[axis], slope, 5e-9 * (norm(gradient) + 1)) << i << " of seed " << seed;
         }
     }
     EXPECT_LT(norm(tet_aspect_gradient(regular[0], regular[1], regular[2], regular[3]).gradient), 1e-13);

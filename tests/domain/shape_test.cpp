@@ -151,7 +151,7 @@ TEST(Shape, BoundsJustHoldIt) {
             seen.max[axis] = std::max(seen.max[axis], x[axis]);
         }
     }
-    EXPECT_NEAR(distance(seen.min, held.min) + distance(seen.max, held.max), 0, 0.01);
+    EXPECT_NEAR(distance(seen.min, held.min) + distance(seen.max, held.max), 0, 1.1e-4);
 }
 
 TEST(Shape, LeastCurvatureRadiusIsThatOfTheSharpestEnd) {

@@ -183,7 +183,7 @@ TEST(Delaunay, Grids) {
 
 TEST(Delaunay, CosphericalPoints) {
     Points points = on_sphere();
-    ASSERT_GT(points.size(), 200u);
+    ASSERT_GT(points.size(), 640u);
     expect_right(points);
     points.push_back({0, 0, 0});  // one cavity of all tets: the way of large cavities
     points.push_back({5, 4, 3});

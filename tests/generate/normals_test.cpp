@@ -43,14 +43,14 @@ double least_cosine(const Surface& surface, const std::vector<Vec3>& normals) {
 }  // namespace
 
 TEST(Normals, OfSpheresAreThoseOfTheSphere) {
-    EXPECT_LT(worst_angle(ball({1, 2, 3}, 1), 0.2), 0.01);  // 0.5 degrees; the triangles lean by 7
+    EXPECT_LT(worst_angle(ball({1, 2, 3}, 1), 0.2), 2.3e-4);  // 0.012 degrees; the triangles lean by 7
 }
 
 TEST(Normals, OfEllipsoidsGrowBetterWithTheSize) {
     const Shape shape = turned_ellipsoid({0, 0, 0}, {2, 1, 1});
     const double coarse = worst_angle(shape, 0.3), fine = worst_angle(shape, 0.15);
     EXPECT_LT(coarse, 0.06);
-    EXPECT_LT(fine, 0.6 * coarse);
+    EXPECT_LT(fine, 0.33 * coarse);
 }
 
 TEST(Normals, OfAPlaneAndOfAParaboloidAreExact) {
@@ -82,7 +82,7 @@ TEST(Normals, SeeAllTrianglesAtASharpTip) {
     points.push_back({0, 0, -1});
     for (int i = 0; i < 6; ++i) triangles.push_back({7, 1 + (i + 1) % 6, 1 + i});
     const Surface needle{points, triangles};
-    EXPECT_GT(least_cosine(needle, surface_normals(points, triangles)), 0.1);
+    EXPECT_GT(least_cosine(needle, surface_normals(points, triangles)), 0.23);
 }
 
 TEST(Normals, TurnWithTheSurface) {

@@ -59,7 +59,7 @@ TEST(Sampling, KeepsItsRule) {
     Random random{3};
     PointGrid taken;
     const std::vector<Vec3> points = fill_room({{0, 0, 0}, {1, 1, 1}}, rule, taken, random);
-    ASSERT_GT(points.size(), 100u);
+    ASSERT_GT(points.size(), 190u);
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_GE(rule.clearance(points[i]), 0);
         for (std::size_t k = 0; k < i; ++k)  // of two points, the later one was held against its own spacing
@@ -88,7 +88,7 @@ TEST(Sampling, StaysInAFlatRoomAndCountsWhatIsTaken) {
     PointGrid taken;
     const Box face{{0, 0, 0.4}, {1, 1, 0.4}};
     const std::vector<Vec3> points = fill_room(face, rule, taken, random);
-    ASSERT_GT(points.size(), 10u);
+    ASSERT_GT(points.size(), 27u);
     for (const Vec3& x : points) EXPECT_EQ(x.z, 0.4);
     EXPECT_TRUE(fill_room(face, rule, taken, random).empty());  // it is full
 }
@@ -111,7 +111,7 @@ TEST(Points, BoxEdgesAreDividedByTheSizeField) {
         for (std::size_t i = 1; i < places.size(); ++i) {
             Vec3 middle = corner;
             middle[axis] = 0.5 * (places[i] + places[i - 1]);
-            EXPECT_NEAR((places[i] - places[i - 1]) / target_size(at, middle), 1, 0.12);
+            EXPECT_NEAR((places[i] - places[i - 1]) / target_size(at, middle), 1, 0.0584);
         }
     }
 }

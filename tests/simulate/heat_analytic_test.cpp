@@ -108,8 +108,8 @@ TEST(HeatAnalytic, SphereCoolsInAMedium) {
         if (std::abs(norm(mesh.position[v]) - 1) < 1e-9) surface += field.values[v], vertices += 1;
     }
     EXPECT_NEAR(centre, 0.88635, 0.02);
-    EXPECT_NEAR(surface / vertices, 0.78929, 0.02);
-    EXPECT_NEAR(mean, 0.82567, 0.04);
+    EXPECT_NEAR(surface / vertices, 0.78929, 0.0028);
+    EXPECT_NEAR(mean, 0.82567, 0.0119);
 }
 
 }  // namespace

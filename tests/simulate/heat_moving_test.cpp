@@ -126,9 +126,9 @@ TEST(HeatMoving, BodyCarriesItsHeat) {
         largest = std::max(largest, std::abs(field.values[v] - linear(back)));
     }
     RecordProperty("largest_error", std::to_string(largest));
-    // Vertices were moved by up to 0.04 past the material, across 230 K/m: 9 K if nothing were carried, and a
-    // tenth of that for one big implicit step.
-    EXPECT_LT(largest, 0.9);
+    // Vertices were moved by up to 0.04 past the material, across 230 K/m: 9 K if nothing were carried, and
+    // 0.22 K for one big implicit step.
+    EXPECT_LT(largest, 0.24);
 }
 
 TEST(HeatMoving, GasMakesWayForABodyAsTheLawOfPotentialFlowSays) {

@@ -33,7 +33,7 @@ class ProjectAfterAdaptation : public testing::TestWithParam<std::uint64_t> {
 protected:
     void SetUp() override {
         ASSERT_EQ(verify(mesh.after), "");
-        ASSERT_GE(plan.changed.come.size(), 200u);
+        ASSERT_GE(plan.changed.come.size(), 1700u);
     }
     void expect_integrals_kept(const NodalValues& old, const NodalValues& fresh) const {
         for (Region region : {surroundings, Region(1)}) {
@@ -76,7 +76,7 @@ TEST_P(ProjectAfterAdaptation, KeepsADiscontinuousFieldInItsBounds) {
     NodalValues free = old, limited = old;
     (void)project(plan, free, {.limit = false, .weight = {}});
     const TransferReport report = project(plan, limited);
-    EXPECT_GT(report.limited, 0.01);
+    EXPECT_GT(report.limited, 0.11);
     EXPECT_LE(report.beyond, 1e-12);
     double worst = 0;
     for (Vertex v : all_vertices(mesh.after)) {
@@ -84,7 +84,7 @@ TEST_P(ProjectAfterAdaptation, KeepsADiscontinuousFieldInItsBounds) {
         EXPECT_LE(limited[v], 1 + 1e-12);
         worst = std::max({worst, -free[v], free[v] - 1});
     }
-    EXPECT_GT(worst, 0.01);  // without the limiter it does overshoot
+    EXPECT_GT(worst, 0.11);  // without the limiter it does overshoot
     expect_integrals_kept(old, limited);
 }
 
@@ -103,7 +103,7 @@ TEST_P(ProjectAfterAdaptation, ChangesNothingAwayFromTheCellsThatTakePart) {
         EXPECT_TRUE(same_vertex(mesh.before, mesh.after, v));
         ++kept;
     }
-    EXPECT_GE(kept, 30);
+    EXPECT_GE(kept, 75);
 }
 
 TEST_P(ProjectAfterAdaptation, NeverCrossesAnInterface) {
@@ -194,7 +194,7 @@ TEST(Project, LeavesTheValuesOfLayersAlone) {
     spoil(mesh.before, surroundings, 20, 1);
     mesh.after = mesh.before;
     mesh.changes = improve(mesh.after, all_tets(mesh.after), snapshot(domain, 0));
-    ASSERT_GE(mesh.changes.cells.size(), 100u);
+    ASSERT_GE(mesh.changes.cells.size(), 530u);
     const TransferPlan plan = plan_of(mesh);
     Random random{1};
     const NodalValues old = nodal_values(mesh.before, [&](Vertex) { return random.uniform(); });
@@ -284,7 +284,7 @@ TEST(Project, AlongTheStepsOfAMovingMesh) {
         ASSERT_NEAR(field_integral(moving.reference(), field), content, 1e-12 * content);
         changed += plan.changed.come.size();
     }
-    EXPECT_GE(changed, 50u);
+    EXPECT_GE(changed, 1300u);
 }
 
 }  // namespace
