@@ -362,6 +362,7 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
     x.low.assign(x.high.size(), 0.0);
     const double wanted = std::max(choice.tolerance, reachable(ranks, system));
     Residual left = residual(ranks, system, x);
+    if (!choice.potential) balance(ranks, system, x, left);
     Krylov krylov(ranks, system, choice);
     double corrected = INFINITY;  // [-] of the largest entry, by the last pass
     while (left.backward_error > wanted) {
