@@ -21,7 +21,6 @@ namespace {
 /// quarters they did.
 constexpr double hopeless_share = 0.5;
 constexpr double units_differ = 300;  // times: near 1000, if one is some times larger than the other anyway
-constexpr double most_growth = 0.5;   // that is advised
 
 double largest_extent(const Box& box) {
     const Vec3 span = box.max - box.min;
@@ -51,8 +50,8 @@ public:
         const double wider = std::max(1.0, span / (factor * size.far));
         const double widened = factor * std::pow(wider, std::clamp(stage - 1, 0.0, 1.0));
         size.far = std::max(size.surface, two_digits(widened * size.far));
-        if (size.growth < most_growth && stage > 2)
-            size.growth = two_digits(size.growth + (stage - 2) * (most_growth - size.growth));
+        if (size.growth < steepest_growth && stage > 2)
+            size.growth = two_digits(size.growth + (stage - 2) * (steepest_growth - size.growth));
         return coarser;
     }
 
@@ -275,6 +274,9 @@ std::vector<std::string> foresee(const Case& it, const Watch* watch) {
     }
     check_sizes(it, all.limit, watch);
     if (const std::string thin = thin_box(domain); !thin.empty()) warnings.push_back(thin);
+    if (domain.size.growth > steepest_growth)
+        warnings.push_back(fmt::format("size.growth = {} counts as {}: no good tetrahedra grow faster",
+                                       domain.size.growth, steepest_growth));
     for (const std::size_t body : all.seen.too_fast)
         warnings.push_back(
             named(domain.bodies[body]) +

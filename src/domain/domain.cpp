@@ -18,6 +18,7 @@ Shape shape_at(const Body& body, double t) { return placed(body.shape, body.moti
 
 Snapshot snapshot(const Domain& domain, double t) {
     Snapshot at{domain.box, domain.size, {}};
+    at.size.growth = std::min(at.size.growth, steepest_growth);
     for (const Body& body : domain.bodies) {
         at.shapes.push_back(shape_at(body, t));
         at.layers.push_back(body.layer);
@@ -55,10 +56,22 @@ double largest_size(const Box& box, const SizeField& size) {
     return std::min(size.far, most_in_widths * std::min({width.x, width.y, width.z}));
 }
 
+namespace {
+
+/// How far a place with this signed distance to the body is from where its size begins to rise: its surface; or the
+/// shell inside of it, whose triangles are smaller than those of the wall, while those of a shell outside are larger.
+double rising_distance(const Snapshot& at, std::size_t body, double from_wall) {
+    const bool in_layered =
+        from_wall < 0 && body < at.layers.size() && at.layers[body] && has_inside(*at.layers[body]);
+    return in_layered ? std::max(0.0, -from_wall - thickness(*at.layers[body])) : std::abs(from_wall);
+}
+
+}  // namespace
+
 double target_size(const Snapshot& at, const Vec3& x) {
     double least = largest_size(at.box, at.size);
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
-        const double rise = at.size.growth * std::abs(signed_distance(at.shapes[body], x));
+        const double rise = at.size.growth * rising_distance(at, body, signed_distance(at.shapes[body], x));
         least = std::min(least, surface_size(at, body) + rise);
     }
     return least;

@@ -48,6 +48,30 @@ TEST(SizeField, RisesFromTheNearestBodyAndIsCapped) {
     EXPECT_DOUBLE_EQ(target_size(Snapshot{at.box, {0.2, 0, 0.8}, at.shapes}, {0, 0, 0}), 0.2);
 }
 
+TEST(SizeField, RisesFromTheShellInsideABody) {
+    Domain domain = one_ball();
+    domain.bodies[0].layer = LayerOptions{.count = 2, .first_height = 0.1, .growth = 2};
+    const auto size = [&](LayerOptions::Side side, double from_centre) {
+        domain.bodies[0].layer->side = side;
+        return target_size(snapshot(domain, 0), {0, 0, 13 - from_centre});
+    };
+    EXPECT_DOUBLE_EQ(size(LayerOptions::Side::outside, 1.5), 0.25);
+    EXPECT_DOUBLE_EQ(size(LayerOptions::Side::outside, 0.5), 0.25);
+    EXPECT_DOUBLE_EQ(size(LayerOptions::Side::inside, 0.5), 0.22);
+    EXPECT_DOUBLE_EQ(size(LayerOptions::Side::inside, 0.8), 0.2);
+    EXPECT_DOUBLE_EQ(size(LayerOptions::Side::inside, 1.5), 0.25);
+    EXPECT_DOUBLE_EQ(size(LayerOptions::Side::both, 0.5), 0.22);
+    EXPECT_DOUBLE_EQ(size(LayerOptions::Side::both, 1.5), 0.25);
+}
+
+TEST(SizeField, RisesNoSteeperThanTetrahedraCan) {
+    Domain domain = one_ball();
+    domain.size.growth = 1;
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {0, 0, 11}), 0.2 + steepest_growth);
+    domain.size.growth = 0.4;
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {0, 0, 11}), 0.2 + 0.4);
+}
+
 TEST(Snapshot, TakesBodiesAlongTheirMotion) {
     Domain domain = one_ball();
     domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1000 * t}, {}}; };

@@ -2,8 +2,7 @@
 #include "meshes.h"
 #include "session.h"
 #include "mesh/prisms.h"
-
-#include "mesh/prisms.h"
+#include "mesh/quality.h"
 
 #include <gtest/gtest.h>
 
@@ -135,6 +134,27 @@ TEST(HeatScale, AnyStepIsSolved) {
             if (decade == -10 && conductivity == 1) {
                 EXPECT_GT(most - least, 2200 * (1 - 1e-6));
             }
+        }
+    }
+}
+
+// What comes in during a step of which conduction makes one temperature all over is that temperature's rise alone:
+// a constant, which the matrix hardly knows.
+TEST(HeatScale, SourcesOfClosedRoomsWarmThemEvenly) {
+    const Mesh mesh = unit_cube_with_body(8);
+    HeatOptions options = hot_body({1.5, 1.7, 3500}, {6000, 4e-4, 2400});
+    options.regions[0].source = [](const Vec3&, double) { return 1e6; };
+    options.regions[1].initial = 300;
+    for (const double dt : {1e10, 1e14}) {
+        SCOPED_TRACE(dt);
+        NodalField field = initial_temperature(mesh, options);
+        const double held = energy(mesh, options, field.values) / 300, room = 1e6 * region_volume(mesh, surroundings);
+        for (int step = 1; step <= 3; ++step) {
+            const HeatReport report =
+                step_heat(petsc().all_ranks(), mesh, mesh, options, field, (step - 1) * dt, dt);
+            EXPECT_LE(report.iterations, most_iterations);
+            for (Vertex v : field.values.indices())
+                ASSERT_NEAR(field.values[v] / (300 + step * dt * room / held), 1, 1e-9);
         }
     }
 }
