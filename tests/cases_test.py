@@ -33,7 +33,7 @@ class Short:
 SHORT = {
     "droplet": Short(0.0, 5, 5.5, 21.6),
     "droplet_layer": Short(0.0, 5, 5.5, 22.2),
-    "near_miss": Short(0.004, 5, 5.65, 20.8, 3.3e-4, halvings=2),
+    "near_miss": Short(0.004, 5, 5.85, 20.8, 3.3e-4, halvings=4),
     "near_wall": Short(0.0038, 6, 5.5, 21.9),
     "quick": Short(0.0, 5, 5.5, 22.4),
     "tumbling": Short(0.0, 5, 5.5, 22.0, 3.4e-4),
