@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "domain/layer_room.h"
+#include "domain/words.h"
 #include "generate/box.h"
 #include "generate/conform.h"
 #include "generate/generate.h"
@@ -32,6 +33,7 @@ namespace {
 struct Draft {
     std::vector<Surface> walls;
     std::vector<std::vector<Vec3>> others;
+    std::size_t missing = 0;  // the body whose surface was the last not to be found among the facets
 };
 
 bool is_layered(const Snapshot& at, std::size_t body) { return body < at.layers.size() && at.layers[body]; }
@@ -69,7 +71,7 @@ Draft relaxed_draft(const Snapshot& at, std::uint64_t seed, const Watch* watch) 
     PointSet set = sample_points(at, seed, watch);
     std::size_t fixed = 0;
     for (const Surface& s : set.surfaces) fixed += s.points.size();
-    Draft draft{std::move(set.surfaces), {}};
+    Draft draft{.walls = std::move(set.surfaces), .others = {}};
     draft.others.resize(draft.walls.size() + 1);
     for (std::size_t i = fixed; i < set.points.size(); ++i)
         draft.others[room_of(at, set.points[i])].push_back(set.points[i]);
@@ -115,18 +117,21 @@ void refine_wall(Draft& draft, std::size_t body, const std::vector<std::size_t>&
 /// Makes room for the triangles of the room's surfaces that were not found.
 void recover(Draft& draft, std::size_t r, const Room& room, const std::vector<SurfaceFacet>& found,
              const Snapshot& at) {
+    const auto body_of = [&](std::size_t surface) {
+        return static_cast<std::size_t>(room.enclosed[surface].value) - 1;
+    };
     std::size_t cleared = 0;
-    for (const SurfaceFacet& f : found)
-        if (!f.inner)
-            cleared += clear_sphere(draft.others[r], at.box,
-                                    diametral_sphere(room.surfaces[f.surface], f.triangle));
+    for (const SurfaceFacet& f : found) {
+        if (f.inner) continue;
+        draft.missing = body_of(f.surface);
+        cleared += clear_sphere(draft.others[r], at.box, diametral_sphere(room.surfaces[f.surface], f.triangle));
+    }
     if (cleared > 0) return;
     for (std::size_t s = 0; s < room.surfaces.size(); ++s) {
         std::vector<std::size_t> missing;
         for (const SurfaceFacet& f : found)
             if (!f.inner && f.surface == s) missing.push_back(f.triangle);
-        const auto body = static_cast<std::size_t>(room.enclosed[s].value) - 1;
-        if (!missing.empty()) refine_wall(draft, body, missing, at);
+        if (!missing.empty()) refine_wall(draft, body_of(s), missing, at);
     }
 }
 
@@ -260,8 +265,8 @@ Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch)
         const std::vector<FilledRoom> rooms = filled_rooms(draft, at, watch);
         if (!rooms.empty()) return assembled(draft.walls, rooms, at);
     }
-    throw DomainError(
-        "the bodies' surfaces cannot be made facets of the mesh; a smaller size.surface may do");
+    throw DomainError(named(domain.bodies[draft.missing]) +
+                      ": its surface cannot be made facets of the mesh; a smaller size.surface may do");
 }
 
 }  // namespace kropla
