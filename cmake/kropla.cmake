@@ -9,7 +9,10 @@ function(kropla_settings target)
         target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Werror)
     endif()
     if(KROPLA_SANITIZE)
-        target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-omit-frame-pointer)
+        # What is undefined ends the program: a test that goes on past it would be counted as passed.
+        target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+                                                 -fno-omit-frame-pointer)
+        target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)
         target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     endif()
 endfunction()
