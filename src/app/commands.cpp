@@ -36,13 +36,16 @@ struct MeshOptions {
     std::filesystem::path case_file, out;
 };
 
-Mesh mesh_of(const Case& it, Watch& watch) {
+/// The initial mesh, written.
+Mesh written_mesh_of(const Case& it, const std::filesystem::path& out, Watch& watch) {
     Progress progress;
     if (progress.on_terminal())  // else what is printed is the result alone
         watch.progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
     try {
         warn(foresee(it, &watch));
-        return initial_mesh(it, &watch);
+        Mesh mesh = initial_mesh(it, &watch);
+        write_vtu(out, mesh, {}, &watch);
+        return mesh;
     } catch (const Interrupted&) {
         throw Interrupted("interrupted while the initial mesh was made; nothing was written");
     }
@@ -56,8 +59,7 @@ int write_initial_mesh(const MeshOptions& options) {
     Watch watch;
     const CatchInterrupts catching(watch);
     const Case it = read_case(options.case_file);
-    const Mesh mesh = mesh_of(it, watch);
-    write_vtu(options.out, mesh);
+    const Mesh mesh = written_mesh_of(it, options.out, watch);
     const QualitySummary quality = summarise_quality(mesh);
     fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
                options.out.string(), quality.tets, quality.vertices, quality.max_aspect_ratio,
@@ -101,7 +103,7 @@ int report_run(const std::filesystem::path& folder) {
     Watch watch;
     const CatchInterrupts catching(watch);
     try {
-        write_report(folder, &watch);
+        write_report(folder, {.watch = &watch});
     } catch (const Interrupted&) {
         throw Interrupted("interrupted; the report was not written");
     }

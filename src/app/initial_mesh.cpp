@@ -29,6 +29,7 @@ Mesh initial_mesh(const Case& it, const Watch* watch) {
     heed(watch, "improving cells", 0);
     Changes changes = improve(mesh, all_tets(mesh), at, options);
     changes += repair(mesh, all_tets(mesh), at, options);
+    heed(watch);
     const QualitySummary quality = summarise_quality(mesh);
     if (quality.max_aspect_ratio <= it.quality.max_aspect_ratio) return in_spatial_order(mesh);
     const Vec3 place = centroid(mesh, quality.worst);

@@ -53,7 +53,17 @@ struct Place {
     std::int64_t step = 0;
     double next_dt;       // [s]
     int steps_given = 0;  // time.steps as the case file has it (same_case.h)
+    bool owes_frame = false;  // of this step: the run was interrupted before it was written
 };
+
+bool at_end(const Place& place, const TimePlan& plan) {
+    return place.state.moving.time() >= plan.end - same_time * plan.end / plan.steps;
+}
+
+/// Is there to be a frame of this step?
+bool is_framed(const Place& place, const Case& it) {
+    return place.step % it.output.every == 0 || at_end(place, it.time);
+}
 
 constexpr const char* steps_given_name = "steps_given";
 
@@ -65,11 +75,13 @@ Place resume(Case& it, const RunOptions& options, const Watch* watch) {
     const double had = known != saved.values.end() ? known->second : 0;
     go_on_with(it, {saved.case_text, static_cast<int>(had), saved.time}, options.case_file.string(),
                options.out.string());
-    return {{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it, watch)),
-             std::move(saved.fields)},
-            saved.step,
-            saved.next_dt,
-            given};
+    Place place{{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it, watch)),
+                 std::move(saved.fields)},
+                saved.step,
+                saved.next_dt,
+                given};
+    place.owes_frame = is_framed(place, it) && !has_frame(options.out, place.step);
+    return place;
 }
 
 Checkpoint checkpoint_of(const Place& place, const Case& it) {
@@ -90,10 +102,6 @@ double step_length(const Place& place, const TimePlan& plan) {
     return left > place.next_dt * (1 + same_time) ? place.next_dt : left;
 }
 
-bool at_end(const Place& place, const TimePlan& plan) {
-    return place.state.moving.time() >= plan.end - same_time * plan.end / plan.steps;
-}
-
 class TimeLoop {
 public:
     TimeLoop(const Case& it, const Ranks& ranks, Place place, RunOutput& output, bool test_rollback)
@@ -102,12 +110,14 @@ public:
     /// Goes on to the end of the case. Throws Interrupted if a watch says so: then the step is dropped.
     void run() {
         const double wanted = it_.time.end / it_.time.steps;
+        if (place_.owes_frame) write_frame();
         for (heed(ranks_); !at_end(place_, it_.time); heed(ranks_)) {
             const auto begin = std::chrono::steady_clock::now();
             const StepReport report =
                 time_step(place_.state, it_, ranks_,
                           {step_length(place_, it_.time), least_dt_share * wanted, test_rollback_});
             ++place_.step;
+            is_saved_ = false;
             // After a step that had to be cut, one of its length, then twice it, up to the wanted one.
             place_.next_dt = report.attempts > 1 ? report.dt : std::min(wanted, 2 * place_.next_dt);
             write(report, begin);
@@ -115,7 +125,11 @@ public:
     }
 
     [[nodiscard]] const Place& place() const { return place_; }
-    [[nodiscard]] Checkpoint checkpoint() const { return checkpoint_of(place_, it_); }
+    /// Writes the checkpoint, if there is none of this step yet.
+    void save() {
+        if (!is_saved_) output_.write_checkpoint(checkpoint_of(place_, it_));
+        is_saved_ = true;
+    }
     [[nodiscard]] const Mesh& mesh() const { return place_.state.moving.reference(); }
 
 private:
@@ -124,12 +138,18 @@ private:
         output_.write_step(place_.step, report, state);
         if (!report.beyond_bounds.empty() && !std::exchange(warned_, true))
             output_.say("warning: " + report.beyond_bounds);
-        if (place_.step % it_.output.every == 0 || at_end(place_, it_.time)) {
-            output_.write_frame(place_.step, state);
-            output_.write_checkpoint(checkpoint());
+        if (is_framed(place_, it_)) {
+            write_frame();
+            save();
         }
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
         output_.show_progress(place_.step, report, taken.count() * (it_.time.end - report.time) / report.dt);
+    }
+
+    /// If this is interrupted, a run that is resumed makes up for it.
+    void write_frame() {
+        output_.write_frame(place_.step, place_.state, ranks_.watch);
+        place_.owes_frame = false;
     }
 
     const Case& it_;
@@ -137,6 +157,7 @@ private:
     Place place_;
     RunOutput& output_;
     bool test_rollback_;
+    bool is_saved_ = false;  // the checkpoint is of this step
     bool warned_ = false;  // of temperatures beyond their bounds: once
 };
 
@@ -169,15 +190,15 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& 
         }
         throw;  // the checkpoint could not be written either
     } catch (const Interrupted&) {
-        output.write_checkpoint(loop.checkpoint());
+        loop.save();
         progress.say("interrupted: a checkpoint is written; go on with --resume");
         return 130;
     } catch (const CaseError& error) {  // a quantity that has no value: first asked for here
-        output.write_checkpoint(loop.checkpoint());
+        loop.save();
         output.write_end(error, loop.mesh());
         throw CaseError(fmt::format("{}: {}", case_file.string(), error.what()));
     } catch (const std::runtime_error& error) {
-        output.write_checkpoint(loop.checkpoint());
+        loop.save();
         output.write_end(error, loop.mesh());
         throw;
     }
@@ -187,7 +208,7 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& 
 Place begin(const Case& it, const Ranks& ranks, Progress& progress) {
     const auto start_time = std::chrono::steady_clock::now();
     ranks.watch->progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
-    Place place{start(it, ranks.watch), 0, it.time.end / it.time.steps, it.time.steps};
+    Place place{start(it, ranks.watch), 0, it.time.end / it.time.steps, it.time.steps, true};
     ranks.watch->progress = {};
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
     progress.say(mesh_line(place.state.moving.reference(), taken.count()));
@@ -233,10 +254,10 @@ std::unique_ptr<RunLock> hold_folder(const RunOptions& options, const Ranks& ran
     return lock;
 }
 
-/// The run is done, and the watch heeded, or interrupted, and the watch has said so already.
-void write_run_report(const std::filesystem::path& folder, const Watch* watch) {
+/// Of a run that is done.
+void write_run_report(const std::filesystem::path& folder, const PageOptions& options) {
     try {
-        write_report(folder, watch);
+        write_report(folder, options);
     } catch (const Interrupted&) {
         throw Interrupted(fmt::format("interrupted while the report was made; the run is done. kropla report {}",
                                       folder.string()));
@@ -251,7 +272,7 @@ int run_with(const RunOptions& options, const Ranks& ranks) {
     if (!options.resume) progress.say(opening_line(options, it));
     Place place = first_place(options, it, ranks, progress);
     const std::string reached = spoken_time(place.state.moving.time());
-    if (options.resume && at_end(place, it.time)) {
+    if (options.resume && at_end(place, it.time) && !place.owes_frame) {
         progress.say(fmt::format("{}: the run is finished: step {} at {}; nothing was done. With a later time.end it "
                                  "goes on", options.out.string(), place.step, reached));
         return 0;
@@ -260,12 +281,13 @@ int run_with(const RunOptions& options, const Ranks& ranks) {
         progress.say(fmt::format("{}: goes on after step {} at {}, until {}", options.out.string(), place.step, reached,
                                  spoken_time(it.time.end)));
     RunOutput output(options, it, ranks.rank == 0, place.step, place.state, progress);
-    if (!options.resume) output.write_checkpoint(checkpoint_of(place, it));
     TimeLoop loop(it, ranks, std::move(place), output, options.test_rollback);
+    if (!options.resume) loop.save();
     const int code = run_to_end(loop, output, ranks, progress, options.case_file);
     for (const std::string& option : unused_solver_options(options.solver_options))
         progress.say(fmt::format("{} was never used: nothing that was chosen asks for it", option));
-    if (ranks.rank == 0) write_run_report(options.out, code == 0 ? ranks.watch : nullptr);
+    const PageOptions page = code == 0 ? PageOptions{.watch = ranks.watch} : PageOptions{.cuts = false};
+    if (ranks.rank == 0) write_run_report(options.out, page);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
     if (code == 0) progress.say(closing_line(options, loop.place().step, loop.place().state.moving.time(), taken.count()));
     return code;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace kropla {
@@ -37,24 +38,29 @@ const char* rung(const Changes& c) {
 
 }  // namespace
 
+bool has_frame(const std::filesystem::path& folder, std::int64_t step) {
+    const std::vector<SeriesEntry> series = read_pvd(folder / "frames.pvd");
+    return std::ranges::any_of(series, [&](const SeriesEntry& frame) { return frame.file == frame_name(step); });
+}
+
 RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step,
                      const State& state, Progress& progress)
     : overwrite_(options.force), folder_(options.out), it_(it), speak_(speak), progress_(progress) {
     if (!speak_) return;
     forget_end(folder_);
     if (options.resume) go_on(step, state);
-    else start(state);
+    else start(state.moving.reference());
 }
 
-void RunOutput::start(const State& state) {
+void RunOutput::start(const Mesh& mesh) {
     if (overwrite_) clear_run_folder(folder_);
     std::error_code trouble;
     std::filesystem::create_directories(folder_ / "frames", trouble);
     if (trouble) throw FileError(fmt::format("{}: cannot be made: {}", folder_.string(), trouble.message()));
     write_file(folder_ / "case.toml", to_toml(it_));
-    write_body_sizes(folder_ / "bodies.csv", body_sizes(it_.domain, state.moving.reference()));
+    write_body_sizes(folder_ / "bodies.csv", body_sizes(it_.domain, mesh));
     table_.emplace(folder_ / "steps.csv", conserved(it_));
-    write_frame(0, state);
+    write_pvd(folder_ / "frames.pvd", series_);
 }
 
 void RunOutput::go_on(std::int64_t step, const State& state) {
@@ -108,9 +114,9 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
     table_->append(row);
 }
 
-void RunOutput::write_frame(std::int64_t step, const State& state) {
+void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* watch) {
     if (!speak_) return;
-    write_vtu(folder_ / frame_name(step), state.moving.reference(), state.fields);
+    write_vtu(folder_ / frame_name(step), state.moving.reference(), state.fields, watch);
     series_.push_back({state.moving.time(), frame_name(step)});
     write_pvd(folder_ / "frames.pvd", series_);
 }

@@ -13,16 +13,20 @@
 
 namespace kropla {
 
+/// Whether the run in the folder has written the frame of this step. Throws FileError.
+[[nodiscard]] bool has_frame(const std::filesystem::path& folder, std::int64_t step);
+
 /// What a run leaves in its folder and says on the way. On ranks that do not `speak`, nothing.
 class RunOutput {
 public:
-    /// Starts the folder with the case and the first frame, or continues it after `step`; later frames and
-    /// rows, which a run that was ended left behind its checkpoint, are dropped. Throws FileError.
+    /// Starts the folder with the case, or continues it after `step`; later frames and rows, which a run that was
+    /// ended left behind its checkpoint, are dropped. Throws FileError.
     RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state,
               Progress& progress);
 
     void write_step(std::int64_t step, const StepReport& report, const State& state);
-    void write_frame(std::int64_t step, const State& state);
+    /// Throws Interrupted if the watch says so: then there is no such frame.
+    void write_frame(std::int64_t step, const State& state, const Watch* watch);
     void write_checkpoint(const Checkpoint& checkpoint);
     /// Why the run ends early, with the mesh as it was last (`report_end`).
     void write_end(const std::exception& why, const Mesh& mesh);
@@ -30,7 +34,7 @@ public:
     void say(const std::string& line) { progress_.say(line); }
 
 private:
-    void start(const State& state);
+    void start(const Mesh& mesh);
     void go_on(std::int64_t step, const State& state);
 
     bool overwrite_;

@@ -51,14 +51,15 @@ std::vector<double> capacities(const Case& it) {
 }
 
 void carry_fields(std::vector<NodalField>& fields, const Mesh& before, const Mesh& after,
-                  const Changes& changes, const Case& it, StepReport& report) {
+                  const Changes& changes, const Case& it, const Ranks& ranks, StepReport& report) {
     if (fields.empty()) return;
     report.energy_before_transfer = energy_in(it, before, fields);
     {
         const Stopwatch watch(report.transfer_seconds);
-        const TransferPlan plan = plan_transfer(before, after, changes.cells, changes.vertices);
+        const TransferPlan plan = plan_transfer(before, after, changes.cells, changes.vertices, ranks.watch);
         const std::vector<double> weight = capacities(it);
-        for (NodalField& field : fields) report.transfer += project(plan, field.values, {.weight = weight});
+        for (NodalField& field : fields)
+            report.transfer += project(plan, field.values, {.weight = weight, .watch = ranks.watch});
         report.transferred_fraction =
             std::max(report.transferred_fraction, static_cast<double>(plan.cells) / count_tets(after));
     }
@@ -67,7 +68,7 @@ void carry_fields(std::vector<NodalField>& fields, const Mesh& before, const Mes
 }
 
 /// Stages 2.1 to 2.4: the current mesh and the fields on its beginning; the reference is not touched.
-void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, const Case& it,
+void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, const Case& it, const Ranks& ranks,
              StepReport& report) {
     const Changes* refined = nullptr;
     {
@@ -76,7 +77,7 @@ void prepare(MovingMesh& moving, std::vector<NodalField>& fields, double t, cons
         refined = &moving.refine();    // 2.2
     }
     if (!refined->cells.empty() || !refined->vertices.empty())
-        carry_fields(fields, moving.reference(), moving.before(), *refined, it, report);
+        carry_fields(fields, moving.reference(), moving.before(), *refined, it, ranks, report);
     const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
     moving.move_boundary(t);                   // 2.3
     moving.optimise();                         // 2.4
@@ -112,13 +113,14 @@ void simulate(const MovingMesh& moving, std::vector<NodalField>& fields, const C
 }
 
 /// Stage 2.6, up to what cannot be taken back.
-void remesh(MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, StepReport& report) {
+void remesh(MovingMesh& moving, std::vector<NodalField>& fields, const Case& it, const Ranks& ranks,
+            StepReport& report) {
     const Changes* remeshed = nullptr;
     {
         const Stopwatch watch(report.mesh_seconds, &report.mesh_cpu_seconds);
         remeshed = &moving.remesh();
     }
-    carry_fields(fields, moving.before(), moving.current(), *remeshed, it, report);
+    carry_fields(fields, moving.before(), moving.current(), *remeshed, it, ranks, report);
 }
 
 void accept(State& state, std::vector<NodalField> fields, StepReport& report) {
@@ -157,11 +159,11 @@ std::optional<Refusal> attempt(MovingMesh& moving, std::vector<NodalField>& fiel
     report.energy_by_transfer = report.transferred_fraction = 0;
     report.transfer = {};
     try {
-        prepare(moving, fields, moving.time() + dt, it, report);
+        prepare(moving, fields, moving.time() + dt, it, ranks, report);
         heed(ranks.watch);
         if (const auto refusal = moving.refusal()) return refusal;
         simulate(moving, fields, it, ranks, dt, report);
-        remesh(moving, fields, it, report);
+        remesh(moving, fields, it, ranks, report);
     } catch (const TransferError& error) {
         return Refusal{.why = error.what(), .limiting = {}};
     }

@@ -140,7 +140,9 @@ std::optional<FilledRoom> filled_room(Draft& draft, std::size_t r, const Snapsho
     FilledRoom done{empty_room(draft.walls, r, at), {}, {}};
     done.room.others = draft.others[r];
     done.filled = triangulate(all_points(done.room), watch);
+    heed(watch);
     const std::vector<SurfaceFacet> found = find_surfaces(done.filled, done.room);
+    heed(watch);
     if (std::ranges::any_of(found, [](const SurfaceFacet& f) { return !f.inner; })) {
         recover(draft, r, done.room, found, at);
         return std::nullopt;
@@ -263,6 +265,7 @@ Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch)
     for (int i = 0; i < recoveries; ++i) {
         heed(watch, "joining cells", static_cast<double>(i) / recoveries);
         const std::vector<FilledRoom> rooms = filled_rooms(draft, at, watch);
+        heed(watch);
         if (!rooms.empty()) return assembled(draft.walls, rooms, at);
     }
     throw DomainError(named(domain.bodies[draft.missing]) +

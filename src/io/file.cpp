@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -15,6 +16,8 @@ namespace {
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what, int error) {
     throw FileError(path.string() + ": " + what + ": " + std::strerror(error));
 }
+
+constexpr std::size_t bytes_at_once = std::size_t{1} << 22;  // between two looks at the watch
 
 /// Owns an open file.
 class OpenFile {
@@ -33,10 +36,13 @@ private:
     int descriptor_;
 };
 
-/// Writes all bytes and flushes them to the disk: 0, or the system's error.
-[[nodiscard]] int write_all(int descriptor, std::string_view bytes) {
+[[nodiscard]] bool says_stop(const Watch* watch) { return watch != nullptr && watch->stop; }
+
+/// Writes all bytes and flushes them to the disk: 0, or the system's error, which is ECANCELED if the watch says stop.
+[[nodiscard]] int write_all(int descriptor, std::string_view bytes, const Watch* watch) {
     while (!bytes.empty()) {
-        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (says_stop(watch)) return ECANCELED;
+        const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), bytes_at_once));
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return errno;
         bytes.remove_prefix(static_cast<std::size_t>(written));
@@ -68,7 +74,7 @@ std::string read_file(const std::filesystem::path& path) {
     return bytes;
 }
 
-void write_file(const std::filesystem::path& path, std::string_view bytes) {
+void write_file(const std::filesystem::path& path, std::string_view bytes, const Watch* watch) {
     std::error_code unknown;
     const auto there = std::filesystem::status(path, unknown);
     if (std::filesystem::is_directory(there)) fail(path, "cannot be written", EISDIR);
@@ -78,11 +84,12 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
     const std::string temporary = path.string() + ".part";
     OpenFile file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     if (file.descriptor() < 0) fail(path, "cannot be written", errno);
-    int error = write_all(file.descriptor(), bytes);
+    int error = write_all(file.descriptor(), bytes, watch);
     if (const int closing = file.close(); error == 0) error = closing;
     if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
     if (error == 0) return;
     ::unlink(temporary.c_str());
+    if (error == ECANCELED) heed(watch);
     fail(path, "cannot be written", error);
 }
 

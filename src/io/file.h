@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/watch.h"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,7 +14,7 @@ namespace kropla {
 /// Makes `bytes` the contents of the file, as a whole or not at all: they are written under a temporary name
 /// beside it, flushed to the disk, and renamed. A file that was there survives every failure and crash before
 /// the rename. Throws FileError with the path and the system's reason: disk full, no such folder, no
-/// permission.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+/// permission. Throws Interrupted if the watch says so: the file is as it was then, and nothing lies beside it.
+void write_file(const std::filesystem::path& path, std::string_view bytes, const Watch* watch = nullptr);
 
 }  // namespace kropla

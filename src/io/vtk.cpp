@@ -80,6 +80,18 @@ private:
 /// the other way round. See the page of vtkWedge in VTK's documentation.
 constexpr std::array<std::size_t, 6> wedge_corners = {0, 2, 1, 3, 5, 4};
 
+/// Has one of VTK's algorithms ask the watch as often as it tells how far it is. It ends, not done, if the watch says
+/// stop; the watch is to outlive it.
+void let_stop(vtkAlgorithm* algorithm, const Watch* watch) {
+    if (watch == nullptr) return;
+    vtkNew<vtkCallbackCommand> ask;
+    ask->SetClientData(const_cast<Watch*>(watch));
+    ask->SetCallback([](vtkObject* working, unsigned long, void* asked, void*) {
+        if (static_cast<const Watch*>(asked)->stop) static_cast<vtkAlgorithm*>(working)->SetAbortExecute(1);
+    });
+    algorithm->AddObserver(vtkCommand::ProgressEvent, ask);
+}
+
 // ---- writing
 
 template <class VtkArray>
@@ -380,11 +392,16 @@ Patch patch_of(const Mesh& mesh, Facet facet, const BoundingBox& box) {
 
 }  // namespace
 
-void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields) {
+void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields,
+               const Watch* watch) {
+    heed(watch);
     const Compacted compacted = compact(mesh);
+    heed(watch);
     vtkNew<vtkUnstructuredGrid> grid;
     add_cells(grid, compacted.mesh);
+    heed(watch);
     add_cell_arrays(grid, compacted.mesh);
+    heed(watch);
     for (const NodalField& field : fields) add_field(grid, field, compacted.old_vertex);
 
     const CaughtErrors errors;
@@ -395,20 +412,32 @@ void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<co
     writer->SetCompressorTypeToZLib();
     writer->SetCompressionLevel(1);  // the fastest: half the time of zlib's default, a tenth more bytes
     writer->WriteToOutputStringOn();
-    if (writer->Write() == 0 || !errors.first().empty()) fail(path, "cannot be written: " + errors.first());
-    write_file(path, writer->GetOutputString());
+    let_stop(writer, watch);
+    const int written = writer->Write();
+    heed(watch);
+    if (written == 0 || !errors.first().empty()) fail(path, "cannot be written: " + errors.first());
+    write_file(path, writer->GetOutputString(), watch);
 }
 
-FileCells read_vtu_cells(const std::filesystem::path& path) {
+namespace {
+
+FileCells read_heeding(const std::filesystem::path& path, const Watch* watch) {
     const std::string bytes = read_file(path);
     check_vtu_text(path, bytes);
+    heed(watch);
     const auto grid = parse(path, bytes);
+    heed(watch);
     FileCells cells;
     cells.position = read_positions(path, *grid);
     read_cells(path, *grid, cells);
     cells.fields = read_fields(path, *grid);
+    heed(watch);
     return cells;
 }
+
+}  // namespace
+
+FileCells read_vtu_cells(const std::filesystem::path& path) { return read_heeding(path, nullptr); }
 
 Frame make_frame(FileCells cells) {
     Frame frame = {make_mesh(std::move(cells.position), std::move(cells.tets), std::move(cells.region)),
@@ -424,8 +453,8 @@ Frame make_frame(FileCells cells) {
     return frame;
 }
 
-Frame read_vtu(const std::filesystem::path& path) {
-    FileCells cells = read_vtu_cells(path);
+Frame read_vtu(const std::filesystem::path& path, const Watch* watch) {
+    FileCells cells = read_heeding(path, watch);
     try {
         return make_frame(std::move(cells));
     } catch (const FileError& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "io/stacks.h"
 #include "simulate/fields.h"
 
@@ -17,8 +18,10 @@ namespace kropla {
 ///                   for both, infinity is turned over, and 10 is R/r = 10 or a scaled corner Jacobian of 0.3
 ///     min_dihedral  [deg] between facets; of a prism measured at its corners, as its quads may be bent
 ///
-/// The file gets its name when it is complete. Throws FileError with the path and the system's reason.
-void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {});
+/// The file gets its name when it is complete. Throws FileError with the path and the system's reason; Interrupted if
+/// the watch says so, and what was there before stays.
+void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {},
+               const Watch* watch = nullptr);
 
 /// What a VTU file says, before neighbours are known: cells as they stand, right or wrong.
 struct FileCells {
@@ -46,7 +49,7 @@ struct Frame {
 /// cell but not the file.
 [[nodiscard]] Frame make_frame(FileCells cells);
 
-/// Both in one; all errors name the file.
-[[nodiscard]] Frame read_vtu(const std::filesystem::path& path);
+/// Both in one; all errors name the file. Throws Interrupted if the watch says so.
+[[nodiscard]] Frame read_vtu(const std::filesystem::path& path, const Watch* watch = nullptr);
 
 }  // namespace kropla

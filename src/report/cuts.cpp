@@ -81,7 +81,7 @@ std::vector<CutFrame> read_cuts(const RunFiles& run, const Watch* watch) {
     std::vector<CutFrame> frames;
     for (const SeriesEntry& entry : start_middle_end(run.frames)) {
         heed(watch);
-        CutFrame f{.time = entry.time, .frame = read_vtu(run.dir / entry.file), .spot = {}, .cut = {}};
+        CutFrame f{.time = entry.time, .frame = read_vtu(run.dir / entry.file, watch), .spot = {}, .cut = {}};
         f.spot = spot_of(f.frame.mesh);
         frames.push_back(std::move(f));
     }
@@ -122,7 +122,7 @@ const NodalField* field_named(const CutFrame& f, const std::string& name) {
 }
 
 /// The first field of the run, in one range of colours for all frames; empty without fields.
-std::string field_rows(const std::vector<CutFrame>& frames) {
+std::string field_rows(const std::vector<CutFrame>& frames, const Watch* watch) {
     if (frames.front().frame.fields.empty()) return {};
     const std::string name = frames.front().frame.fields.front().name,
                       unit = frames.front().frame.fields.front().unit;
@@ -139,6 +139,7 @@ std::string field_rows(const std::vector<CutFrame>& frames) {
     }
     if (!(least < most)) most = least + std::max(1e-6 * std::abs(least), 1e-12);
     const auto draw = [&](const CutFrame& f, const CutWindow& window) {
+        heed(watch);
         return draw_field(f.cut, field_named(f, name)->values, least, most, window);
     };
     const std::string title = escaped(name + (unit.empty() ? "" : " [" + unit + "]"));
@@ -162,7 +163,7 @@ std::string draw_cuts(const RunFiles& run, const Watch* watch) {
         axis + " axis through the first body's centre cuts.</p>";
     html += row("Whole domain", frames, whole, cells);
     if (frames.front().spot.radius > 0) html += row("Around the first body", frames, magnified, cells);
-    return html + field_rows(frames) + "</section>";
+    return html + field_rows(frames, watch) + "</section>";
 }
 
 }  // namespace kropla

@@ -163,14 +163,17 @@ std::string draw_figures(const RunFiles& run, const RunSummary& summary) {
 }
 
 /// What is known of a run once it has begun.
-std::string draw_steps(const RunFiles& run, const RunSummary& summary, const Watch* watch) {
-    return draw_charts(run, summary) + '\n' + draw_cuts(run, watch) + '\n' + draw_bodies(run) + draw_figures(run, summary) +
+std::string draw_steps(const RunFiles& run, const RunSummary& summary, const PageOptions& options) {
+    const std::string cuts = options.cuts ? draw_cuts(run, options.watch)
+                                          : "<section><h2>The mesh, cut</h2><p class=\"soft\">Not drawn, as the run was "
+                                            "interrupted: <code>kropla report</code> draws it.</p></section>";
+    return draw_charts(run, summary) + '\n' + cuts + '\n' + draw_bodies(run) + draw_figures(run, summary) +
            "\n<section><h2>The case</h2><pre>" + escaped(run.case_text) + "</pre></section>\n";
 }
 
 }  // namespace
 
-void write_report(const std::filesystem::path& dir, const Watch* watch) {
+void write_report(const std::filesystem::path& dir, const PageOptions& options) {
     const RunFiles run = read_run_files(dir);
     const RunSummary summary = summarise_run(run);
     std::string html =
@@ -179,10 +182,10 @@ void write_report(const std::filesystem::path& dir, const Watch* watch) {
         escaped(run.name) + " – Kropla</title><style>" + std::string(page_style) +
         "</style></head>\n<body><main>";
     html += draw_head(run, summary) + '\n' + draw_ending(run);
-    if (!run.steps.columns.empty()) html += draw_steps(run, summary, watch);
+    if (!run.steps.columns.empty()) html += draw_steps(run, summary, options);
     html += "<p class=\"soft\">Drawn from the files of the run; <code>kropla report</code> draws it again.</p></main>"
             "</body></html>\n";
-    write_file(dir / "report.html", html);
+    write_file(dir / "report.html", html, options.watch);
 }
 
 }  // namespace kropla

@@ -77,12 +77,13 @@ std::array<std::array<double, n>, n> stiffness(const CellPoints<n>& points) {
 
 /// A residual is gas lost or gained. Of no weight is what would fill the vertex's share of the volume in a
 /// step: the tolerance then is the relative change of a constant state.
-LinearSystem potential_system(const Mesh& mesh, const Cells& cells, const Numbering& numbering, int rank,
+LinearSystem potential_system(const Mesh& mesh, const Cells& cells, const Numbering& numbering, const Ranks& ranks,
                               const Array<Vertex, double>& swept, const Array<Vertex, double>& share,
                               double dt) {
-    const Cells mine = cells_of_rank(mesh, cells, numbering, rank);
-    LinearSystem system = empty_system(mesh, mine, numbering, rank);
+    const Cells mine = cells_of_rank(mesh, cells, numbering, ranks.rank);
+    LinearSystem system = empty_system(mesh, mine, numbering, ranks.rank);
     for_each_cell(mine, [&](const auto& cell) {
+        heed(ranks.watch);
         const auto vertices = cell_vertices(mesh, cell);
         add_to(system, numbering, vertices, stiffness<vertices.size()>(cell_points(corners(mesh, cell))));
     });
@@ -118,7 +119,7 @@ DisplacedFlow solve_displaced_flow(const Ranks& ranks, const Mesh& before, const
         const Array<Vertex, double> share = shares_of_volume(current, cells);
         balance(share, swept);
         const Numbering numbering = number_vertices(current, cells, ranks.count);
-        const auto system = potential_system(current, cells, numbering, ranks.rank, swept, share, dt);
+        const auto system = potential_system(current, cells, numbering, ranks, swept, share, dt);
         const Solution potential = solve(ranks, system, choice);
         flow.potential[region] = at_vertices(current, numbering, potential.value);
         flow.iterations += potential.iterations;

@@ -24,6 +24,7 @@ struct StepInTime {
     const Mesh& before;
     const Mesh& current;
     double begin, dt;  // [s]
+    const Watch* watch;
 };
 
 const Quantity& source_of(const HeatOptions& options, Region region) {
@@ -46,7 +47,7 @@ Array<Vertex, double> means_at(const StepInTime& step, const Quantity& quantity,
                                const std::vector<Vertex>& vertices, const std::string& key) {
     std::vector<Way> ways;
     for (Vertex v : vertices) ways.push_back({step.before.position[v], step.current.position[v]});
-    const std::vector<double> means = step_means(quantity, ways, step.begin, step.dt, key);
+    const std::vector<double> means = step_means(quantity, ways, step.begin, step.dt, key, step.watch);
     Array<Vertex, double> at(step.current.position.size(), 0.0);
     for (std::size_t k = 0; k < vertices.size(); ++k) at[vertices[k]] = means[k];
     return at;
@@ -235,7 +236,7 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
     const DisplacedFlow flow =
         solve_displaced_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt);
     const Cells cells = living_cells(current);
-    const StepInTime in_time{before, current, t, dt};
+    const StepInTime in_time{before, current, t, dt, ranks.watch};
     const Boundary boundary{mean_fluxes(in_time, cells.tets, options), fixed_values(current, options, t + dt)};
     const Numbering numbering = number_vertices(current, cells, ranks.count);
     const HeatStep step{.before = before,

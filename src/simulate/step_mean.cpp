@@ -44,8 +44,8 @@ struct Piece {
 
 class Integrand {
 public:
-    Integrand(const Quantity& quantity, double t, double dt, const std::string& key)
-        : quantity_(quantity), t_(t), dt_(dt), key_(key) {}
+    Integrand(const Quantity& quantity, double t, double dt, const std::string& key, const Watch* watch)
+        : quantity_(quantity), t_(t), dt_(dt), key_(key), watch_(watch) {}
 
     double operator()(const Way& way, double share) {
         const Vec3 place = (1 - share) * way.from + share * way.to;
@@ -55,16 +55,20 @@ public:
     }
     /// The largest size of all values so far.
     [[nodiscard]] double largest() const { return largest_; }
+    /// The watch of the integration.
+    [[nodiscard]] const Watch* watch() const { return watch_; }
 
 private:
     const Quantity& quantity_;
     double t_, dt_;
     const std::string& key_;
+    const Watch* watch_;
     double largest_ = 0;
 };
 
 /// Between two times of different values: the jump, if there is one.
 std::vector<Jump> find_jump(Integrand& f, const Way& way, Jump between) {
+    heed(f.watch());
     double low = f(way, between.before), high = f(way, between.after);
     const double change = std::abs(high - low);
     for (;;) {
@@ -84,6 +88,7 @@ struct Testimony {
 };
 
 Testimony look(Integrand& f, const Way& way, int times) {
+    heed(f.watch());
     std::vector<double> value;
     for (int k = 0; k <= times; ++k) value.push_back(f(way, static_cast<double>(k) / times));
     const auto [least, most] = std::ranges::minmax(value);
@@ -153,6 +158,7 @@ double integrate(Integrand& f, const Way& way, const Piece& piece) {
 
 /// `whole` is the rule's value for the piece.
 double refine(Integrand& f, const Way& way, const Piece& piece, double whole) {
+    heed(f.watch());  // of one place there may be a million pieces
     const double length = piece.end - piece.begin, middle = 0.5 * (piece.begin + piece.end);
     const Piece low{piece.begin, middle}, high{middle, piece.end};
     const double of_low = integrate(f, way, low), of_high = integrate(f, way, high);
@@ -181,16 +187,17 @@ double value_at(const Quantity& quantity, const Vec3& place, double t, const std
 }
 
 std::vector<double> step_means(const Quantity& quantity, std::span<const Way> ways, double t, double dt,
-                               const std::string& key) {
+                               const std::string& key, const Watch* watch) {
     if (ways.empty()) return {};
     if (quantity.target<Constant>() != nullptr)
         return std::vector<double>(ways.size(), value_at(quantity, ways.front().to, t + dt, key));
-    Integrand f(quantity, t, dt, key);
+    Integrand f(quantity, t, dt, key, watch);
     const Testimony seen = hear_witnesses(f, ways);
     const std::vector<Piece> pieces = pieces_of_step(seen);
     std::vector<double> means;
     means.reserve(ways.size());
     for (const Way& way : ways) {
+        heed(watch);
         if (const auto value = lasting_value(f, way, seen)) {
             means.push_back(*value);
             continue;

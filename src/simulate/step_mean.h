@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "simulate/heat.h"
 
 #include <span>
@@ -26,9 +27,10 @@ struct Way {
 /// them at 2048 times: what lasts shorter than that, or is shorter than a twentieth of the step and passes
 /// places by that were not looked at, may be missed. Deterministic.
 ///
-/// `key` is what the user calls the quantity: throws CaseError with it, place and time if a value is not finite.
+/// `key` is what the user calls the quantity: throws CaseError with it, place and time if a value is not finite;
+/// Interrupted if the watch says so.
 [[nodiscard]] std::vector<double> step_means(const Quantity& quantity, std::span<const Way> ways, double t,
-                                             double dt, const std::string& key);
+                                             double dt, const std::string& key, const Watch* watch = nullptr);
 
 /// The quantity's value; throws as above.
 [[nodiscard]] double value_at(const Quantity& quantity, const Vec3& place, double t, const std::string& key);

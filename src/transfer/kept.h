@@ -3,6 +3,7 @@
 #include "transfer/changed.h"
 #include "transfer/transfer.h"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -38,5 +39,21 @@ private:
 void check_weights(const Mesh& after, const ChangedCells& changed, std::span<const double> weight);
 /// Throws FieldError, naming "vertex" or "cell" and its slot, if the value is not finite.
 void check_value(double value, const char* what, std::int32_t slot);
+
+/// Does the deed on an array that has a value for every slot of both meshes, and leaves it with one for each of
+/// the new; if the deed throws, with those it had.
+template <class Values, class Deed>
+TransferReport with_all_slots(Values& values, std::size_t after, const Deed& deed) {
+    const std::size_t before = values.size();
+    values.resize(std::max(before, after));
+    try {
+        const TransferReport report = deed();
+        values.resize(after);
+        return report;
+    } catch (...) {
+        values.resize(before);
+        throw;
+    }
+}
 
 }  // namespace kropla

@@ -175,8 +175,8 @@ Meeting meet(const Distances& d) {
 /// Covers new cells one after another; what it keeps in between only saves memory and steps of the walk.
 class Cover {
 public:
-    Cover(const Mesh& before, const Mesh& after, const OldCells& old)
-        : before_(before), after_(after), old_(old), seen_(at(old.size()), 0) {}
+    Cover(const Mesh& before, const Mesh& after, const OldCells& old, const Watch* watch)
+        : before_(before), after_(after), old_(old), watch_(watch), seen_(at(old.size()), 0) {}
 
     void begin_chunk() { last_ = -1; }
 
@@ -187,6 +187,7 @@ public:
         ++stamp_;
         if (const std::int32_t start = find(cell, slot); start >= 0) spread_from(start, cell);
         if (std::abs(sum_ - 1) > covered) {
+            heed(watch_);  // as that is work by the number of all old cells
             ++out.searched;
             for (std::int32_t i = 0; i < old_.size(); ++i)
                 if (old_[i].region == cell.region && seen_[at(i)] != stamp_) visit(i, cell);
@@ -351,6 +352,7 @@ private:
     const Mesh& before_;
     const Mesh& after_;
     const OldCells& old_;
+    const Watch* watch_;
     std::vector<std::uint32_t> seen_;  // per old cell: the stamp of the new cell that met it last
     std::uint32_t stamp_ = 0;
     std::int32_t last_ = -1;  // where the last walk ended
@@ -379,13 +381,14 @@ std::span<const CellShare> Overlaps::cell(std::size_t come) const {
     return part_of(chunk.cell, chunk.cell_end, come % chunk_size);
 }
 
-Overlaps overlaps(const Mesh& before, const Mesh& after, const ChangedCells& changed) {
+Overlaps overlaps(const Mesh& before, const Mesh& after, const ChangedCells& changed, const Watch* watch) {
     const OldCells old(before, changed.gone);
     Overlaps result;
     const std::size_t count = changed.come.size();
     result.chunks.resize((count + Overlaps::chunk_size - 1) / Overlaps::chunk_size);
-    tbb::enumerable_thread_specific<Cover> covers([&] { return Cover(before, after, old); });
+    tbb::enumerable_thread_specific<Cover> covers([&] { return Cover(before, after, old, watch); });
     tbb::parallel_for(std::size_t{0}, result.chunks.size(), [&](std::size_t c) {
+        heed(watch);
         Cover& cover = covers.local();
         cover.begin_chunk();
         const std::size_t end = std::min(count, (c + 1) * Overlaps::chunk_size);

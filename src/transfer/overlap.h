@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "transfer/changed.h"
 
 #include <array>
@@ -43,7 +44,8 @@ struct Overlaps {
 /// new cell to 1e-12, all old cells of the region are tried. Parts that meet at a facet of the old mesh share
 /// their cut, computed from the same plane by the same operations, so that they leave no gap and do not
 /// overlap, but for the rounding of the corners of the parts. The result does not depend on the number of
-/// threads.
-[[nodiscard]] Overlaps overlaps(const Mesh& before, const Mesh& after, const ChangedCells& changed);
+/// threads. Throws Interrupted if the watch says so.
+[[nodiscard]] Overlaps overlaps(const Mesh& before, const Mesh& after, const ChangedCells& changed,
+                                const Watch* watch = nullptr);
 
 }  // namespace kropla

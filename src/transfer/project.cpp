@@ -193,9 +193,11 @@ public:
           solutions_(plan.blocks.size()),
           grown_(plan.blocks.size()) {}
 
-    TransferReport run() {
+    /// Finds the new values; the old ones stay until `write`.
+    TransferReport solve() {
         check_data();
         tbb::parallel_for(std::size_t{0}, solutions_.size(), [&](std::size_t c) {
+            heed(options_.watch);
             solutions_[c] = solve_block(plan_, plan_.blocks[c], old_, options_.limit);
         });
         if (std::ranges::any_of(solutions_, [](const BlockSolution& s) { return !s.bounded; })) grow();
@@ -203,8 +205,18 @@ public:
         for (std::size_t c = 0; c < solutions_.size(); ++c) add(c, sums);
         sums.check();
         sums.report(report_, options_.weight);
-        write();
         return report_;
+    }
+    void write() {
+        std::vector<double> given;
+        for (const GivenVertex& vertex : plan_.given) given.push_back(old_.interpolated(vertex));
+        for (std::size_t i = 0; i < given.size(); ++i) values_[plan_.given[i].vertex] = given[i];
+        for (std::size_t c = 0; c < solutions_.size(); ++c) {
+            if (gone(c)) continue;
+            const BlockSolution& s = solutions_[c];
+            for (std::size_t i = 0; i < s.value.size(); ++i)
+                values_[block(c).free[i]] = s.origin + s.value[i];
+        }
     }
 
 private:
@@ -220,6 +232,7 @@ private:
             ++report_.grown;
             std::size_t now = clusters_.now(c);
             for (int ring = 0; ring < most_rings && !solutions_[now].bounded; ++ring) {
+                heed(options_.watch);
                 if (!clusters_.grow(*plan_.after, now)) break;
                 now = clusters_.now(now);
                 grown_[now] = mass_block(*plan_.before, *plan_.after, plan_.changed, come, clusters_, now);
@@ -262,17 +275,6 @@ private:
         report_.limited = std::max(report_.limited, s.limited);
         report_.beyond = std::max(report_.beyond, s.beyond);
     }
-    void write() {
-        std::vector<double> given;
-        for (const GivenVertex& vertex : plan_.given) given.push_back(old_.interpolated(vertex));
-        for (std::size_t i = 0; i < given.size(); ++i) values_[plan_.given[i].vertex] = given[i];
-        for (std::size_t c = 0; c < solutions_.size(); ++c) {
-            if (gone(c)) continue;
-            const BlockSolution& s = solutions_[c];
-            for (std::size_t i = 0; i < s.value.size(); ++i)
-                values_[block(c).free[i]] = s.origin + s.value[i];
-        }
-    }
 
     const TransferPlan& plan_;
     NodalData values_;
@@ -298,26 +300,27 @@ TransferReport& TransferReport::operator+=(const TransferReport& other) {
 }
 
 TransferReport project(const TransferPlan& plan, NodalData values, const ProjectOptions& options) {
-    return Projection(plan, values, options).run();
+    Projection projection(plan, values, options);
+    const TransferReport report = projection.solve();
+    projection.write();
+    return report;
 }
 
 TransferReport project(const TransferPlan& plan, Array<Vertex, double>& values,
                        const ProjectOptions& options) {
-    values.resize(std::max(values.size(), plan.after->position.size()));
-    const TransferReport report = project(plan, NodalData{values.data()}, options);
-    values.resize(plan.after->position.size());
-    return report;
+    return with_all_slots(values, plan.after->position.size(),
+                          [&] { return project(plan, NodalData{values.data()}, options); });
 }
 
 TransferReport project(const TransferPlan& plan, Array<Vertex, Vec3>& values, const ProjectOptions& options) {
-    values.resize(std::max(values.size(), plan.after->position.size()));
-    TransferReport report;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        double& first = axis == 0 ? values.data()->x : axis == 1 ? values.data()->y : values.data()->z;
-        report += project(plan, NodalData{&first, 3}, options);
-    }
-    values.resize(plan.after->position.size());
-    return report;
+    return with_all_slots(values, plan.after->position.size(), [&] {
+        TransferReport report;
+        std::vector<Projection> axes;
+        for (double* first : {&values.data()->x, &values.data()->y, &values.data()->z})
+            report += axes.emplace_back(plan, NodalData{first, 3}, options).solve();
+        for (Projection& axis : axes) axis.write();  // all or nothing
+        return report;
+    });
 }
 
 }  // namespace kropla

@@ -9,6 +9,7 @@
 
 namespace kropla {
 TransferReport project(const TransferPlan& plan, CellData values, const ProjectOptions& options) {
+    heed(options.watch);
     check_weights(*plan.after, plan.changed, options.weight);
     for (Tet t : plan.changed.gone) check_value(values[t], "cell", t.value);
     RegionSums sums(plan);
@@ -31,10 +32,8 @@ TransferReport project(const TransferPlan& plan, CellData values, const ProjectO
 }
 
 TransferReport project(const TransferPlan& plan, Array<Tet, double>& values, const ProjectOptions& options) {
-    values.resize(std::max(values.size(), plan.after->tets.size()));
-    const TransferReport report = project(plan, CellData{values.data()}, options);
-    values.resize(plan.after->tets.size());
-    return report;
+    return with_all_slots(values, plan.after->tets.size(),
+                          [&] { return project(plan, CellData{values.data()}, options); });
 }
 
 }  // namespace kropla

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/watch.h"
 #include "mesh/mesh.h"
 #include "transfer/cluster.h"
 #include "transfer/mass.h"
@@ -51,12 +52,13 @@ struct TransferPlan {
 
 /// Plans the transfer between two meshes in one slot numbering which differ in `cells` and in the balls of
 /// `vertices` (each may stand more than once, some may be gone again). The work is proportional to what
-/// differs. Regions fill the same volume in both meshes, and layers are the same.
+/// differs. Regions fill the same volume in both meshes, and layers are the same. Throws Interrupted if the watch
+/// says so.
 [[nodiscard]] TransferPlan plan_transfer(const Mesh& before, const Mesh& after, std::span<const Tet> cells,
-                                         std::span<const Vertex> vertices);
+                                         std::span<const Vertex> vertices, const Watch* watch = nullptr);
 
 /// The same for any two meshes of one domain: all slots are compared.
-[[nodiscard]] TransferPlan plan_transfer(const Mesh& before, const Mesh& after);
+[[nodiscard]] TransferPlan plan_transfer(const Mesh& before, const Mesh& after, const Watch* watch = nullptr);
 
 // --- Fields ------------------------------------------------------------------------------------------------
 
@@ -78,6 +80,7 @@ struct CellData {
 struct ProjectOptions {
     bool limit = true;                    // keep the bounds of the old cells that overlap
     std::span<const double> weight = {};  // per region: the density whose integral is reported; empty: 1
+    const Watch* watch = nullptr;         // may end the work, which throws Interrupted then
 };
 
 /// What the transfer of a field did; integrals are over the cells that take part, weighted.
@@ -100,7 +103,7 @@ struct TransferReport {
 /// exactly.
 /// Throws, nothing written: FieldError if a value that takes part or a weight is not finite, or a region has no
 /// weight; TransferError if the integral of a region would differ by more than 1e-12 of that of the absolute
-/// value, as where cells change in a region of which no vertex is free.
+/// value, as where cells change in a region of which no vertex is free; Interrupted if the watch says so.
 TransferReport project(const TransferPlan& plan, NodalData values, const ProjectOptions& options = {});
 TransferReport project(const TransferPlan& plan, Array<Vertex, double>& values,
                        const ProjectOptions& options = {});

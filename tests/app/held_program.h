@@ -54,6 +54,14 @@ public:
         }
         return false;
     }
+    /// Waits until there is such a file; false if that takes too long.
+    bool writes(const std::string& file) const {
+        for (int i = 0; i < 30000; ++i) {
+            if (std::filesystem::exists(folder_ / file)) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        return false;
+    }
     /// Waits until it has said `text`, which is taken out of the pipe; false if that takes too long.
     bool says(const std::string& text) {
         pollfd output = {reader_, POLLIN, 0};

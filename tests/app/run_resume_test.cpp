@@ -20,10 +20,14 @@ void run_whole(const TemporaryFolder& folder, const std::string& text) {
     opening = opening_of(it.out);
 }
 
-/// Begins the case in the folder "d" and sends the signal in the step `at`.
+/// Begins the case in the folder "d" and sends the signal in the step `at`, after its frame, if it has one.
 Outcome stopped(const TemporaryFolder& folder, int at, int signal) {
     HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, at - 1, opening);
     EXPECT_TRUE(program.reaches("d", at));
+    const std::string frame = "frames/0000" + std::to_string(at) + ".vtu";
+    if (fs::exists(folder.path / "whole" / frame)) {
+        EXPECT_TRUE(program.writes("d/" + frame));
+    }
     program.signal(signal);
     return program.finish();
 }
@@ -85,6 +89,47 @@ TEST(Resume, DropsWhatIsBeyondTheCheckpoint) {
     EXPECT_EQ(read_pvd(folder.path / "d/frames.pvd").size(), 3u);
     EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
     expect_same_run(folder.path / "d", folder.path / "whole");
+}
+
+/// As a run leaves it that was interrupted while it wrote its last frame.
+void take_last_frame(const fs::path& run) {
+    std::vector<SeriesEntry> series = read_pvd(run / "frames.pvd");
+    fs::remove(run / series.back().file);
+    series.pop_back();
+    write_pvd(run / "frames.pvd", series);
+}
+
+TEST(Resume, WritesTheFrameThatIsOwed) {
+    const TemporaryFolder folder;
+    run_whole(folder, short_case(4, 2));
+    for (const int at : {1, 2}) {
+        SCOPED_TRACE(at);
+        ASSERT_EQ(stopped(folder, at, SIGINT).code, 130);
+        if (at == 2) take_last_frame(folder.path / "d");
+        EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+        expect_same_run(folder.path / "d", folder.path / "whole");
+        fs::remove_all(folder.path / "d");
+    }
+    fs::copy(folder.path / "whole", folder.path / "d", fs::copy_options::recursive);
+    take_last_frame(folder.path / "d");
+    EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+    expect_same_run(folder.path / "d", folder.path / "whole");
+}
+
+// A source that no quadrature comes to an end with: the signal meets the step in the middle of it.
+TEST(Resume, FindsAStepDroppedThatWasInterruptedInItsSources) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", replaced(short_case(2), "[output]", "source = \"sin(1e13*t)\"\n[output]"));
+    HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, 10, 0);
+    ASSERT_TRUE(program.writes("d/frames/00000.vtu"));
+    ASSERT_FALSE(program.ends_within(1));
+    program.signal(SIGTERM);
+    ASSERT_TRUE(program.ends_within(20));
+    EXPECT_EQ(program.finish().code, 130);
+    EXPECT_EQ(rows(folder), 0u);
+    EXPECT_EQ(read_pvd(folder.path / "d/frames.pvd").size(), 1u);
+    EXPECT_TRUE(fs::exists(folder.path / "d/checkpoint.h5"));
+    EXPECT_NE(contents(folder.path / "d/report.html").find("as the run was interrupted"), std::string::npos);
 }
 
 TEST(Resume, OfAFinishedRunChangesNothing) {

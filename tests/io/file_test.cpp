@@ -22,6 +22,17 @@ TEST(File, IsReplacedAsAWhole) {
     EXPECT_EQ(files_in(folder), 1u);
 }
 
+TEST(File, IsAsItWasIfTheWatchSaysStop) {
+    const Folder folder;
+    write_file(folder / "a", "first");
+    Watch watch;
+    write_file(folder / "b", "first", &watch);
+    watch.stop = true;
+    EXPECT_THROW(write_file(folder / "a", "second", &watch), Interrupted);
+    EXPECT_EQ(read_file(folder / "a"), "first");
+    EXPECT_EQ(files_in(folder), 2u);
+}
+
 /// A disk that is full, played by a limit on the size of files.
 TEST(File, SurvivesAFullDisk) {
     const Folder folder;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "examples.h"
+#include "io/file.h"
 #include "mesh/quality.h"
 #include "mesh/verify.h"
 
@@ -230,6 +231,21 @@ TEST(Vtu, SaysWhyItCannotBeWritten) {
     const Folder folder;
     const auto message = message_of<FileError>([&] { write_vtu(folder / "none/a.vtu", cube_of_tets(1)); });
     EXPECT_NE(message.find("none/a.vtu: cannot be written: No such file or directory"), std::string::npos);
+}
+
+TEST(Vtk, IsEndedByItsWatch) {
+    const Folder folder;
+    const Mesh mesh = cube_of_tets(2);
+    Watch watch;
+    write_vtu(folder / "a.vtu", mesh, {}, &watch);
+    const std::string whole = read_file(folder / "a.vtu");
+    write_vtu(folder / "b.vtu", mesh);
+    EXPECT_EQ(whole, read_file(folder / "b.vtu"));
+    EXPECT_EQ(read_vtu(folder / "a.vtu", &watch).mesh.tets, mesh.tets);
+    watch.stop = true;
+    EXPECT_THROW(write_vtu(folder / "a.vtu", mesh, std::vector{some_field(mesh)}, &watch), Interrupted);
+    EXPECT_THROW(static_cast<void>(read_vtu(folder / "a.vtu", &watch)), Interrupted);
+    EXPECT_EQ(read_file(folder / "a.vtu"), whole);
 }
 
 }  // namespace

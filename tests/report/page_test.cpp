@@ -154,7 +154,7 @@ TEST(Page, IsNotWrittenIfTheWatchSaysStop) {
     write_file(dir / "report.html", "the one before");
     Watch watch;
     watch.stop = true;
-    EXPECT_THROW(write_report(dir, &watch), Interrupted);
+    EXPECT_THROW(write_report(dir, {.watch = &watch}), Interrupted);
     EXPECT_EQ(read_file(dir / "report.html"), "the one before");
     std::filesystem::remove_all(dir);
 }

@@ -30,6 +30,27 @@ double largest_error(const Quantity& quantity, const std::vector<Way>& ways, dou
     return largest;
 }
 
+// Whenever it says stop, no more is asked than a close look or a piece and its halves take.
+TEST(StepMean, EndsWhereverTheWatchSaysStop) {
+    constexpr int most_at_once = 2100;
+    Watch watch;
+    int asked = 0, last = 0;
+    const auto hats = [&](const Vec3& x, double t) {
+        if (++asked == last) watch.stop = true;
+        return std::abs(std::sin(40 * t + x.x));
+    };
+    static_cast<void>(step_means(hats, places(3), 0, 1, "source", &watch));
+    const int all = asked;
+    ASSERT_GT(all, 10 * most_at_once);
+    for (last = 1; last < all - most_at_once; last += all / 40) {
+        SCOPED_TRACE(last);
+        asked = 0;
+        watch.stop = false;
+        EXPECT_THROW(static_cast<void>(step_means(hats, places(3), 0, 1, "source", &watch)), Interrupted);
+        EXPECT_LE(asked, last + most_at_once);
+    }
+}
+
 TEST(StepMean, APulseBetweenTwoStepEndsCountsInFull) {
     const auto pulse = [](double from, double to) {
         return [=](const Vec3&, double t) { return t > from && t < to ? 1.0 : 0.0; };

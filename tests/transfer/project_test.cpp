@@ -1,6 +1,8 @@
 #include "adapt/cases.h"
 #include "adapt/moving_mesh.h"
+#include "base/error.h"
 #include "base/random.h"
+#include "base/watch.h"
 #include "generate/generate.h"
 #include "mesh/meshes.h"
 #include "mesh/prisms.h"
@@ -27,6 +29,46 @@ TransferPlan plan_of(const AdaptedMesh& mesh) {
 
 NodalValues values_at(const Mesh& mesh, double (*field)(const Vec3&)) {
     return nodal_values(mesh, [&](Vertex v) { return field(mesh.position[v]); });
+}
+
+// Nothing is written where a transfer is ended from outside, and the fields have the values they had.
+TEST(Project, IsEndedByItsWatch) {
+    const AdaptedMesh mesh = adapted_mesh(1);
+    Watch watch;
+    watch.stop = true;
+    EXPECT_THROW(static_cast<void>(plan_transfer(mesh.before, mesh.after, &watch)), Interrupted);
+    EXPECT_THROW(static_cast<void>(plan_transfer(mesh.before, mesh.after, mesh.changes.cells, mesh.changes.vertices,
+                                                 &watch)),
+                 Interrupted);
+    const TransferPlan plan = plan_of(mesh);
+    EXPECT_THROW(static_cast<void>(overlaps(mesh.before, mesh.after, plan.changed, &watch)), Interrupted);
+    NodalValues field = values_at(mesh.before, jump);
+    Array<Vertex, Vec3> vectors(mesh.before.position.size(), Vec3{1, 2, 3});
+    Array<Tet, double> cells(mesh.before.tets.size(), 4.0);
+    const auto old_field = field;
+    const auto old_vectors = vectors;
+    const auto old_cells = cells;
+    EXPECT_THROW(project(plan, field, {.watch = &watch}), Interrupted);
+    EXPECT_THROW(project(plan, vectors, {.watch = &watch}), Interrupted);
+    EXPECT_THROW(project(plan, cells, {.watch = &watch}), Interrupted);
+    EXPECT_EQ(field, old_field);
+    EXPECT_EQ(vectors, old_vectors);
+    EXPECT_EQ(cells, old_cells);
+    watch.stop = false;
+    EXPECT_NO_THROW(project(plan, field, {.watch = &watch}));
+    EXPECT_NE(field, old_field);
+}
+
+// A component that cannot be carried leaves the others as they were.
+TEST(Project, OfAVectorIsWrittenWholeOrNotAtAll) {
+    const AdaptedMesh mesh = adapted_mesh(1);
+    const TransferPlan plan = plan_of(mesh);
+    Array<Vertex, Vec3> vectors(mesh.before.position.size());
+    for (Vertex v : vectors.indices()) vectors[v] = {jump(mesh.before.position[v]), 1, 1};
+    vectors[mesh.before.tets[plan.changed.gone.front()][0]].z = INFINITY;
+    const auto old_vectors = vectors;
+    EXPECT_THROW(project(plan, vectors), FieldError);
+    EXPECT_EQ(vectors, old_vectors);
 }
 
 class ProjectAfterAdaptation : public testing::TestWithParam<std::uint64_t> {
