@@ -8,6 +8,7 @@
 // from the same mesh. Seconds on the wall, as those are what a second thread saves; the meshes must have the same bits.
 
 #include "adapt/stepping.h"
+#include "step/initial_mesh.h"
 
 #include <oneapi/tbb/global_control.h>
 
@@ -68,7 +69,7 @@ Measured measure(MovingMesh moving, int steps) {
 MovingMesh started(const Domain& domain) {
     std::printf("\rmeshing ...          ");
     std::fflush(stdout);
-    return {domain, starting_mesh(domain, 1), 0};
+    return {domain, initial_mesh(domain, 1), 0};
 }
 
 bool proportional_work(int steps) {

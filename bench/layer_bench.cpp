@@ -1,9 +1,10 @@
 // What a prism layer costs: the mesh work of the droplet's steps with it and without, and the part of that
 // which is the layer's own. The layer of cases/droplet_layer.toml shall add at most a tenth to a step.
 
-#include "adapt/moving_mesh.h"
 #include "generate/layers.h"
 #include "mesh/quality.h"
+#include "step/advance.h"
+#include "step/initial_mesh.h"
 
 #include <benchmark/benchmark.h>
 
@@ -24,27 +25,15 @@ Domain droplet(bool layered) {
     return {{{-0.004, -0.004, 0}, {0.004, 0.004, 0.016}}, {body}, {}};
 }
 
-Mesh mesh_of(const Domain& domain) {
-    const Snapshot at = snapshot(domain, 0);
-    Mesh mesh = generate_mesh(domain, 1);
-    improve(mesh, all_tets(mesh), at, {});
-    repair(mesh, all_tets(mesh), at, {});
-    return mesh;
-}
-
 void take_step(MovingMesh& moving) {
-    moving.begin_step();
-    moving.refine();
-    moving.move_boundary(moving.time() + step);
-    moving.optimise();
-    if (moving.refusal()) throw std::runtime_error("a step of the benchmark was refused");
-    moving.accept();
+    Fields none;
+    if (advance(moving, none, step, {}).attempts > 1) throw std::runtime_error("a step of the benchmark was refused");
 }
 
 /// Items are steps, the first ten of the droplet's way.
 void measure_step(benchmark::State& state, bool layered) {
     const Domain domain = droplet(layered);
-    const MovingMesh start(domain, mesh_of(domain), 0);
+    const MovingMesh start(domain, initial_mesh(domain, 1), 0);
     double worst = 0;
     for (auto _ : state) {
         MovingMesh moving = start;
@@ -62,7 +51,7 @@ BENCHMARK_CAPTURE(measure_step, with_layer, true)->Unit(benchmark::kMillisecond)
 /// What a step does for its layer alone: columns set up anew, the gap measured, prisms looked at.
 void measure_layer(benchmark::State& state) {
     const Domain domain = droplet(true);
-    const Mesh mesh = mesh_of(domain);
+    const Mesh mesh = initial_mesh(domain, 1);
     const Snapshot at = snapshot(domain, 0);
     const PrismLayer& layer = mesh.layers.front();
     for (auto _ : state) {

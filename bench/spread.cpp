@@ -10,6 +10,7 @@
 // what does it cost?
 
 #include "adapt/stepping.h"
+#include "step/initial_mesh.h"
 #include "adapt/zone.h"
 #include "mesh/quality.h"
 
@@ -227,7 +228,7 @@ int main(int count, char** arguments) try {
     const int steps = count > 1 ? std::atoi(arguments[1]) : 25;
     if (steps < 1 || steps > case_steps) return std::fprintf(stderr, "kropla_spread [STEPS]\n"), 2;
     const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-    const Mesh start = starting_mesh(droplet(), 1);
+    const Mesh start = initial_mesh(droplet(), 1);
     std::printf("| way | steps until R/r > %g | steps done without a cell turned over |", limit);
     for (int i = report_every; i <= steps; i += report_every)
         std::printf(" above %g after %d (mean R/r) |", limit, i);

@@ -11,6 +11,7 @@
 // a minute of processor time.
 
 #include "adapt/stepping.h"
+#include "step/initial_mesh.h"
 #include "base/error.h"
 #include "mesh/quality.h"
 
@@ -111,7 +112,7 @@ void all_anew(Mesh& mesh, const Domain& domain, double t, Outcome& outcome) {
     const Pose pose = domain.bodies.front().motion(t);
     outcome.cells_replaced += count_tets(mesh);
     ++outcome.global_remeshes;
-    mesh = starting_mesh(droplet([pose](double) { return pose; }), 1);
+    mesh = initial_mesh(droplet([pose](double) { return pose; }), 1);
 }
 
 void clusters(Mesh& mesh, const Domain& domain, double t, Outcome& outcome) {
@@ -210,11 +211,7 @@ Outcome run_ours(const Mesh& start, int steps) {
 
 bool ours_takes(const Mesh& start, const Domain& domain) {
     MovingMesh moving(domain, start, 0);
-    moving.begin_step();
-    moving.refine();
-    moving.move_boundary(1);
-    moving.optimise();
-    return !moving.refusal();
+    return !move_bodies(Attempt(moving), 1).refusal();
 }
 
 /// In surface sizes, straight down from the start: the longest that is taken at once, as all shorter ones are.
@@ -246,7 +243,7 @@ int main(int count, char** arguments) try {
     using namespace kropla;
     const int steps = count > 1 ? std::atoi(arguments[1]) : 50;
     if (steps < 1) return std::fprintf(stderr, "kropla_strategies [STEPS]\n"), 2;
-    const Mesh start = starting_mesh(droplet(of_the_case), 1);
+    const Mesh start = initial_mesh(droplet(of_the_case), 1);
     const Outcome ours = run_ours(start, steps);
     std::vector<Outcome> others;
     for (const Way& way : plain_ways) others.push_back(run(way, start, steps));

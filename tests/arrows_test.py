@@ -15,11 +15,12 @@ SEES = {
     "generate": ["domain"],
     "adapt": ["generate"],
     "transfer": ["mesh"],
+    "step": ["adapt", "transfer"],
     "simulate": ["mesh", "transfer"],
     "welding": ["simulate", "domain"],
     "io": ["mesh", "simulate"],
     "report": ["io"],
-    "app": ["base", "mesh", "domain", "generate", "adapt", "transfer", "simulate", "welding", "io", "report"],
+    "app": ["base", "mesh", "domain", "generate", "adapt", "transfer", "step", "simulate", "welding", "io", "report"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
 

@@ -11,5 +11,9 @@ list(APPEND KROPLA_MESH_FILES
     adapt/remesh.cpp
     adapt/way.cpp
     adapt/move.cpp
+    adapt/correction.cpp
+    adapt/mesh_step.cpp
+    adapt/fits_domain.cpp
     adapt/moving_mesh.cpp
+    adapt/attempt.cpp
 )

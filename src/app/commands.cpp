@@ -6,15 +6,16 @@
 #include "app/check_files.h"
 #include "app/command_line.h"
 #include "app/foresight.h"
-#include "app/initial_mesh.h"
 #include "app/interrupt.h"
 #include "app/new_case.h"
 #include "app/progress.h"
 #include "app/run.h"
+#include "app/step.h"
 #include "base/error.h"
 #include "io/vtk.h"
 #include "mesh/quality.h"
 #include "report/page.h"
+#include "step/initial_mesh.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -43,7 +44,7 @@ Mesh written_mesh_of(const Case& it, const std::filesystem::path& out, Watch& wa
         watch.progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
     try {
         warn(foresee(it, &watch));
-        Mesh mesh = initial_mesh(it, &watch);
+        Mesh mesh = initial_mesh(it.domain, adapt_options(it, &watch));
         write_vtu(out, mesh, {}, &watch);
         return mesh;
     } catch (const Interrupted&) {

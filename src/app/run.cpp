@@ -6,7 +6,6 @@
 #include "app/commands.h"
 #include "app/ending.h"
 #include "app/foresight.h"
-#include "app/initial_mesh.h"
 #include "app/interrupt.h"
 #include "app/run_folder.h"
 #include "app/run_lines.h"
@@ -18,6 +17,7 @@
 #include "base/error.h"
 #include "report/page.h"
 #include "simulate/stop.h"
+#include "step/initial_mesh.h"
 
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
@@ -38,7 +38,7 @@ constexpr double least_dt_share = 1e-3;    // of the wanted dt: below, the floor
 constexpr double same_time = 1e-9;         // of the wanted dt: what is left of a step is rounding
 
 State start(const Case& it, const Watch* watch) {
-    Mesh mesh = initial_mesh(it, watch);
+    Mesh mesh = initial_mesh(it.domain, adapt_options(it, watch));
     std::vector<NodalField> fields;
     if (it.heat) {
         check_heat(*it.heat, mesh);
@@ -113,13 +113,12 @@ public:
         if (place_.owes_frame) write_frame();
         for (heed(ranks_); !at_end(place_, it_.time); heed(ranks_)) {
             const auto begin = std::chrono::steady_clock::now();
-            const StepReport report =
-                time_step(place_.state, it_, ranks_,
-                          {step_length(place_, it_.time), least_dt_share * wanted, test_rollback_});
+            const StepOptions options{step_length(place_, it_.time), least_dt_share * wanted};
+            if (test_rollback_) take_step_back(place_.state, it_, ranks_, options);
+            const StepReport report = time_step(place_.state, it_, ranks_, options);
             ++place_.step;
             is_saved_ = false;
-            // After a step that had to be cut, one of its length, then twice it, up to the wanted one.
-            place_.next_dt = report.attempts > 1 ? report.dt : std::min(wanted, 2 * place_.next_dt);
+            place_.next_dt = std::min(wanted, next_dt(report.mesh, place_.next_dt));
             write(report, begin);
         }
     }
@@ -143,7 +142,7 @@ private:
             save();
         }
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-        output_.show_progress(place_.step, report, taken.count() * (it_.time.end - report.time) / report.dt);
+        output_.show_progress(place_.step, report, taken.count() * (it_.time.end - report.mesh.time) / report.mesh.dt);
     }
 
     /// If this is interrupted, a run that is resumed makes up for it.

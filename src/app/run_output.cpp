@@ -3,10 +3,10 @@
 #include "app/body_sizes.h"
 #include "app/ending.h"
 #include "app/run_folder.h"
+#include "app/step_row.h"
 #include "base/error.h"
 #include "io/file.h"
 #include "io/vtk.h"
-#include "mesh/prisms.h"
 
 #include <fmt/format.h>
 
@@ -18,13 +18,8 @@ namespace {
 
 std::string frame_name(std::int64_t step) { return fmt::format("frames/{:05}.vtu", step); }
 
-std::vector<FieldBalance> conserved(const Case& it) {
-    if (!it.heat) return {};
-    return {{.field = "energy",
-             .unit = "J",
-             .value_unit = "K",
-             .from_bodies = std::vector<double>(it.domain.bodies.size())}};
-}
+/// The columns of a run's table.
+StepRow columns(const Case& it, const Mesh& mesh) { return step_row(0, {}, mesh, {}, it); }
 
 /// The highest rung of the repair ladder that was climbed.
 const char* rung(const Changes& c) {
@@ -59,12 +54,12 @@ void RunOutput::start(const Mesh& mesh) {
     if (trouble) throw FileError(fmt::format("{}: cannot be made: {}", folder_.string(), trouble.message()));
     write_file(folder_ / "case.toml", to_toml(it_));
     write_body_sizes(folder_ / "bodies.csv", body_sizes(it_.domain, mesh));
-    table_.emplace(folder_ / "steps.csv", conserved(it_));
+    table_.emplace(folder_ / "steps.csv", columns(it_, mesh));
     write_pvd(folder_ / "frames.pvd", series_);
 }
 
 void RunOutput::go_on(std::int64_t step, const State& state) {
-    table_.emplace(folder_ / "steps.csv", conserved(it_), static_cast<int>(step));
+    table_.emplace(folder_ / "steps.csv", columns(it_, state.moving.reference()), static_cast<int>(step));
     series_ = read_pvd(folder_ / "frames.pvd");
     std::erase_if(series_, [&](const SeriesEntry& frame) { return frame.time > state.moving.time(); });
     write_pvd(folder_ / "frames.pvd", series_);
@@ -73,45 +68,9 @@ void RunOutput::go_on(std::int64_t step, const State& state) {
 
 void RunOutput::write_step(std::int64_t step, const StepReport& report, const State& state) {
     if (!speak_) return;
-    const Changes& c = report.changes;
-    quality_ = summarise_quality(state.moving.reference());
-    StepRow row;
-    row.step = static_cast<int>(step);
-    row.time = report.time;
-    row.dt = report.dt;
-    row.attempts = report.attempts;
-    row.vertices = quality_->vertices;
-    row.tets = quality_->tets;
-    row.prisms = count_prisms(state.moving.reference());
-    row.max_aspect_ratio = quality_->max_aspect_ratio;
-    row.p999_aspect_ratio = quality_->p999_aspect_ratio;
-    row.min_dihedral = quality_->min_dihedral;
-    row.max_dihedral = quality_->max_dihedral;
-    row.smoothing_sweeps = c.smoothing_sweeps;
-    row.swaps = c.swaps;
-    row.splits = c.splits;
-    row.collapses = c.collapses;
-    row.local_remeshes = c.local_remeshes;
-    row.largest_ring = c.largest_ring;
-    row.global_remeshes = c.global_remeshes;
-    row.touched_fraction = report.touched_fraction;
-    row.kept_vertices = report.kept_vertices;
-    row.kept_tets = report.kept_tets;
-    row.mesh_seconds = report.mesh_seconds;
-    row.mesh_cpu_seconds = report.mesh_cpu_seconds;
-    row.simulate_seconds = report.simulate_seconds;
-    row.transfer_seconds = report.transfer_seconds;
-    row.transferred_fraction = report.transferred_fraction;
-    row.fields = conserved(it_);
-    for (FieldBalance& field : row.fields) {
-        field.integral = report.energy;
-        field.transfer_error = report.energy != 0 ? report.energy_by_transfer / std::abs(report.energy) : 0;
-        field.from_bodies = report.heat_from_bodies;
-        field.before_transfer = report.energy_before_transfer;
-        field.limited = report.transfer.limited;
-        field.beyond = report.transfer.beyond;
-    }
-    table_->append(row);
+    const Mesh& mesh = state.moving.reference();
+    quality_ = summarise_quality(mesh);
+    table_->append(step_row(step, report, mesh, *quality_, it_));
 }
 
 void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* watch) {
@@ -132,17 +91,17 @@ void RunOutput::write_end(const std::exception& why, const Mesh& mesh) {
 void RunOutput::show_progress(std::int64_t step, const StepReport& report, double seconds_left) {
     if (!speak_) return;
     const double wanted = it_.time.end / it_.time.steps;
-    const double left = it_.time.end - report.time;
+    const double left = it_.time.end - report.mesh.time;
     const auto steps_left = static_cast<std::int64_t>(std::ceil(left / wanted - 1e-6));
     ProgressRow row;
     row.step = static_cast<int>(step);
     row.steps = static_cast<int>(step + steps_left);
-    row.time = report.time;
+    row.time = report.mesh.time;
     row.worst_aspect_ratio = quality_->max_aspect_ratio;
-    row.rung = rung(report.changes);
-    row.touched_fraction = report.touched_fraction;
-    row.mesh_seconds = report.mesh_seconds;
-    if (it_.heat) row.heat_seconds = report.simulate_seconds;
+    row.rung = rung(report.mesh.changes);
+    row.touched_fraction = report.mesh.touched_fraction;
+    row.mesh_seconds = report.mesh.mesh_seconds;
+    if (it_.heat) row.heat_seconds = report.mesh.solve_seconds;
     row.seconds_left = seconds_left;
     progress_.show(row);
 }

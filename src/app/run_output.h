@@ -2,8 +2,8 @@
 
 #include "app/progress.h"
 #include "app/run.h"
-#include "app/step.h"
-#include "app/steps_csv.h"
+#include "app/step_row.h"
+
 #include "io/checkpoint.h"
 #include "io/pvd.h"
 #include "mesh/quality.h"

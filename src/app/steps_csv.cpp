@@ -7,17 +7,16 @@
 
 #include <charconv>
 #include <sstream>
-#include <string_view>
 
 namespace kropla {
 namespace {
 
-constexpr std::string_view columns =
-    "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,min_dihedral "
-    "[deg],"
-    "max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,largest_ring,global_remeshes,"
-    "touched_fraction,kept_vertices,kept_tets,mesh_seconds [s],simulate_seconds [s],transfer_seconds [s],"
-    "mesh_cpu_seconds [s],transferred_fraction";
+template <class Text>
+std::string joined(const StepRow& row, Text text) {
+    std::string line;
+    for (const Figure& figure : row) line += (line.empty() ? "" : ",") + text(figure);
+    return line;
+}
 
 /// The step of a row; 0 if it has none.
 int step_of(const std::string& line) {
@@ -50,43 +49,24 @@ std::string kept(const std::filesystem::path& file, const std::string& header, i
 
 }  // namespace
 
-std::string csv_header(const std::vector<FieldBalance>& fields) {
-    std::string header(columns);
-    for (const FieldBalance& f : fields) {
-        header += fmt::format(",{0}_integral [{1}],{0}_transfer_error,{0}_before_transfer [{1}],"
-                              "{0}_limited [{2}],{0}_beyond_bounds [{2}]",
-                              f.field, f.unit, f.value_unit);
-        for (std::size_t body = 1; body <= f.from_bodies.size(); ++body)
-            header += fmt::format(",{}_from_body_{} [{}/s]", f.field, body, f.unit);
-    }
-    return header;
+std::string csv_header(const StepRow& row) {
+    return joined(row, [](const Figure& figure) { return figure.column; });
 }
 
-std::string csv_line(const StepRow& r) {
-    std::string line = fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.step, r.time, r.dt,
-        r.attempts, r.vertices, r.tets, r.prisms, r.max_aspect_ratio, r.p999_aspect_ratio, r.min_dihedral,
-        r.max_dihedral, r.smoothing_sweeps, r.swaps, r.splits, r.collapses, r.local_remeshes, r.largest_ring,
-        r.global_remeshes, r.touched_fraction, r.kept_vertices, r.kept_tets, r.mesh_seconds, r.simulate_seconds,
-        r.transfer_seconds, r.mesh_cpu_seconds, r.transferred_fraction);
-    for (const FieldBalance& f : r.fields) {
-        line += fmt::format(",{},{},{},{},{}", f.integral, f.transfer_error, f.before_transfer, f.limited,
-                            f.beyond);
-        for (const double flux : f.from_bodies) line += fmt::format(",{}", flux);
-    }
-    return line;
+std::string csv_line(const StepRow& row) {
+    return joined(row, [](const Figure& figure) { return fmt::format("{}", figure.value); });
 }
 
-StepsTable::StepsTable(const std::filesystem::path& file, const std::vector<FieldBalance>& fields)
+StepsTable::StepsTable(const std::filesystem::path& file, const StepRow& like)
     : file_(file), out_(file, std::ios::binary) {
-    out_ << csv_header(fields) << '\n' << std::flush;
+    out_ << csv_header(like) << '\n' << std::flush;
     if (!out_) throw FileError(fmt::format("{}: cannot be written", file.string()));
 }
 
-StepsTable::StepsTable(const std::filesystem::path& file, const std::vector<FieldBalance>& fields,
+StepsTable::StepsTable(const std::filesystem::path& file, const StepRow& like,
                        int last_step)
     : file_(file) {
-    write_file(file, kept(file, csv_header(fields), last_step));
+    write_file(file, kept(file, csv_header(like), last_step));
     out_.open(file, std::ios::binary | std::ios::app);
     if (!out_) throw FileError(fmt::format("{}: cannot be written", file.string()));
 }

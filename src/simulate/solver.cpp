@@ -23,6 +23,7 @@ constexpr int most_iterations = 2000;      // of all passes: far more than any s
 constexpr int restart = 60;                // of GMRES: as many iterations as a solve may take
 constexpr double pass_margin = 0.1;        // [-] what a pass aims at, in tolerances
 constexpr double deepest_pass = 1e-13;     // [-] of the residual, beyond what a Krylov method sees is its own rounding
+constexpr double near_enough = 100;        // [tolerances] where corrections get nowhere any more
 constexpr double stagnation = 0.5;         // [-] of the error and of the residual: what leaves more got nowhere
 constexpr double regular_shift = 1e-12;    // [-] of the diagonal, to precondition: far above rounding, below all that
                                            //   contrasts of 1e8 make small, but for constants
@@ -381,8 +382,9 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
             corrected = largest_size(correction) / largest_size(x.high);
             if (corrected < rounding) break;
         }
-        if (left.backward_error > wanted && (stuck(before, left) || krylov.out_of_iterations()))
-            give_up(choice, krylov, left.backward_error);
+        if (left.backward_error <= wanted || !(stuck(before, left) || krylov.out_of_iterations())) continue;
+        if (left.backward_error > near_enough * wanted) give_up(choice, krylov, left.backward_error);
+        break;
     }
     std::vector<double> value(x.high.size());
     for (std::size_t r = 0; r < value.size(); ++r) value[r] = x.value(r);

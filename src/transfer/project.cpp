@@ -198,6 +198,7 @@ public:
         check_data();
         tbb::parallel_for(std::size_t{0}, solutions_.size(), [&](std::size_t c) {
             heed(options_.watch);
+            if (!takes_part(plan_.blocks[c])) return;
             solutions_[c] = solve_block(plan_, plan_.blocks[c], old_, options_.limit);
         });
         if (std::ranges::any_of(solutions_, [](const BlockSolution& s) { return !s.bounded; })) grow();
@@ -220,6 +221,10 @@ public:
     }
 
 private:
+    [[nodiscard]] bool takes_part(const MassBlock& block) const {
+        return !options_.only.exists() || block.cells.empty() ||
+               plan_.after->region[block.cells.front().tet] == options_.only;
+    }
     [[nodiscard]] const MassBlock& block(std::size_t c) const {
         return grown_[c].cells.empty() ? plan_.blocks[c] : grown_[c];
     }
@@ -248,13 +253,14 @@ private:
         check_weights(*plan_.after, plan_.changed, options_.weight);
         const auto check = [&](Vertex v) { check_value(values_[v], "vertex", v.value); };
         for (const MassBlock& block : plan_.blocks)
-            for (const OldMass& cell : block.gone) std::ranges::for_each(cell.vertices, check);
+            if (takes_part(block))
+                for (const OldMass& cell : block.gone) std::ranges::for_each(cell.vertices, check);
         for (const GivenVertex& vertex : plan_.given) std::ranges::for_each(vertex.from, check);
     }
 
     void add(std::size_t c, RegionSums& sums) {
         const MassBlock& of = block(c);
-        if (gone(c) || of.cells.empty()) return;
+        if (gone(c) || of.cells.empty() || !takes_part(of)) return;
         const BlockSolution& s = solutions_[c];
         const Region region = plan_.after->region[of.cells.front().tet];
         for (const OldMass& cell : of.gone) {

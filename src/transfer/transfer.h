@@ -80,6 +80,7 @@ struct CellData {
 struct ProjectOptions {
     bool limit = true;                    // keep the bounds of the old cells that overlap
     std::span<const double> weight = {};  // per region: the density whose integral is reported; empty: 1
+    Region only = {};                     // a field of this region alone; elsewhere it has no meaning. None: of all
     const Watch* watch = nullptr;         // may end the work, which throws Interrupted then
 };
 

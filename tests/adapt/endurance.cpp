@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "mesh/prisms.h"
 #include "mesh/quality.h"
+#include "step/initial_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -78,8 +79,9 @@ Domain endurance_domain(std::uint64_t seed) {
 EnduranceReport endure(int steps, std::uint64_t seed, const EnduranceBounds& bounds,
                        const std::function<void(const EnduranceStep&)>& told) {
     const Domain domain = endurance_domain(seed);
-    const AdaptOptions options{.passing = bounds.worst_aspect_ratio, .floor = bounds.worst_aspect_ratio};
-    MovingMesh moving(domain, starting_mesh(domain, seed, options), 0, options);
+    const AdaptOptions options{
+        .passing = bounds.worst_aspect_ratio, .floor = bounds.worst_aspect_ratio, .seed = seed};
+    MovingMesh moving(domain, initial_mesh(domain, options), 0, options);
     EnduranceReport report;
     report.cells_at_start = count_cells(moving.reference());
     try {

@@ -1,10 +1,14 @@
 #include "adapt/cases.h"
-#include "adapt/moving_mesh.h"
+#include "adapt/attempt.h"
+#include "base/error.h"
 #include "mesh/properties.h"
 #include "mesh/quality.h"
 #include "mesh/verify.h"
 
 #include <gtest/gtest.h>
+
+#include <memory>
+#include <stdexcept>
 
 namespace kropla {
 namespace {
@@ -24,33 +28,36 @@ Domain small_box(std::vector<Body> bodies) {
 
 Domain crossing_sphere() { return small_box({travelling({0, 0, -1}, {0.2, -0.1, 1}, {0.5, 0.5, 0.5})}); }
 
-/// One step as a run takes it: tried again where it was refused, then with half the time step. Returns the
-/// number of attempts.
-int step(MovingMesh& moving, double dt) {
+struct Stepped {
+    int attempts = 0;
+    StepStatistics done = {};
+};
+
+/// One step, tried again where it was refused, then with half the time step.
+Stepped step(MovingMesh& moving, double dt) {
     const double start = moving.time();
     for (int attempt = 1; attempt <= 12; ++attempt) {
         const Mesh reference = moving.reference();
-        moving.begin_step();
-        moving.refine();
-        const Mesh refined = moving.before();
-        moving.move_boundary(start + dt);
-        moving.optimise();
-        EXPECT_EQ(moving.before(), refined);
-        EXPECT_EQ(moving.current().tets, refined.tets);
-        EXPECT_EQ(moving.current().neighbour, refined.neighbour);
-        const bool refused = moving.refusal().has_value();
+        Attempt begun(moving);
+        const Mesh refined = begun.before();
+        MovedAttempt moved = move_bodies(std::move(begun), start + dt);
+        EXPECT_EQ(moved.before(), refined);
+        EXPECT_EQ(moved.current().tets, refined.tets);
+        EXPECT_EQ(moved.current().neighbour, refined.neighbour);
+        const bool refused = moved.refusal().has_value();
         EXPECT_EQ(moving.reference(), reference);
         if (!refused) {
-            moving.accept();
-            return attempt;
+            RemeshedAttempt remeshed = remesh(std::move(moved));
+            EXPECT_LE(worst_of(remeshed.before()), AdaptOptions{}.floor) << "t = " << start + dt;
+            return {attempt, accept(std::move(remeshed))};
         }
-        moving.refuse();
+        refuse(std::move(moved));
         EXPECT_EQ(moving.reference(), reference);
         EXPECT_EQ(moving.time(), start);
         if (attempt > 1) dt /= 2;
     }
     ADD_FAILURE() << "stuck at t = " << start;
-    return 0;
+    return {};
 }
 
 /// The longest edge in terms of the target size at its middle.
@@ -72,19 +79,18 @@ void expect_good_crossing(const Domain& domain, std::uint64_t seed, int steps) {
     Changes all;
     for (int i = 0; moving.time() < 1 - 1e-9; ++i) {
         ASSERT_LE(i, 3 * steps) << "t = " << moving.time();
-        ASSERT_GT(step(moving, std::min(1.0 / steps, 1 - moving.time())), 0);
+        const Stepped stepped = step(moving, std::min(1.0 / steps, 1 - moving.time()));
+        ASSERT_GT(stepped.attempts, 0);
         const Properties now = properties(moving.reference());
         ASSERT_EQ(verify(moving.reference()), "") << "t = " << moving.time();
         EXPECT_LE(worst_of(moving.reference()), AdaptOptions{}.floor) << "t = " << moving.time();
-        EXPECT_LE(worst_of(moving.before()), AdaptOptions{}.floor) << "t = " << moving.time();
         EXPECT_TRUE(same_shape(now, start)) << "t = " << moving.time();
         for (std::size_t body = 0; body < domain.bodies.size(); ++body)
             EXPECT_NEAR(now.volume.at(region_of_body(body)) / volume(domain.bodies[body].shape), 1, 1e-12);
         EXPECT_NEAR(now.volume.at(surroundings) / start.volume.at(surroundings), 1, 1e-12);
-        EXPECT_GT(moving.statistics().cells_touched, 0);
-        all += moving.statistics().refined;
-        all += moving.statistics().optimised;
-        all += moving.statistics().remeshed;
+        EXPECT_GT(stepped.done.cells_touched, 0);
+        for (const Changes* changes : {&stepped.done.refined, &stepped.done.optimised, &stepped.done.remeshed})
+            all += *changes;
     }
     // What the bodies leave behind them is filled again.
     EXPECT_LE(longest_edge(moving.reference(), snapshot(domain, moving.time())), 2.5);
@@ -129,76 +135,65 @@ TEST(MovingMesh, AnAttemptDoesNotTouchTheReference) {
     const Domain domain = crossing_sphere();
     const Mesh start = improved_mesh(domain, 1);
     MovingMesh moving(domain, start, 0);
-    moving.begin_step();
-    EXPECT_EQ(moving.before(), start);
-    EXPECT_EQ(moving.current(), start);
-    EXPECT_EQ(moving.refine().cells_replaced, 0);  // nothing was refused
-    moving.move_boundary(1.0 / 15);
-    moving.optimise();
+    Attempt attempt(moving);
+    EXPECT_EQ(attempt.before(), start);
+    EXPECT_EQ(attempt.refined().cells_replaced, 0);  // nothing was refused
+    MovedAttempt moved = move_bodies(std::move(attempt), 1.0 / 15);
     EXPECT_EQ(moving.reference(), start);
-    EXPECT_EQ(moving.before(), start);
-    EXPECT_NE(moving.current(), start);
-    moving.refuse();
+    EXPECT_EQ(moved.before(), start);
+    EXPECT_NE(moved.current(), start);
+    refuse(std::move(moved));
     EXPECT_EQ(moving.reference(), start);
     EXPECT_EQ(moving.time(), 0);
 }
 
-TEST(MovingMesh, AcceptNamesEveryVertexThatIsNewOrWasMoved) {
+TEST(MovingMesh, NamesEveryVertexThatIsNewOrWasMoved) {
     const Domain domain = crossing_sphere();
     MovingMesh moving(domain, improved_mesh(domain, 2), 0);
-    int inserted = 0, moved = 0;
+    int inserted = 0, moved_vertices = 0;
     for (int i = 0; i < 5; ++i) {
-        moving.begin_step();
-        moving.refine();
-        moving.move_boundary(moving.time() + 1.0 / 15);
-        moving.optimise();
-        ASSERT_FALSE(moving.refusal());
-        const auto changed = moving.accept().vertices;
-        const Mesh &before = moving.before(), &after = moving.reference();
+        RemeshedAttempt remeshed = remesh(move_bodies(Attempt(moving), moving.time() + 1.0 / 15));
+        const auto& changed = remeshed.remeshed().vertices;
+        const Mesh &before = remeshed.before(), &after = remeshed.current();
         for (Vertex v : all_vertices(after)) {
             const bool known = v.value < static_cast<int>(before.position.size()) && alive(before, v);
             if (known && before.position[v] == after.position[v]) continue;
             EXPECT_TRUE(std::ranges::find(changed, v) != changed.end()) << v.value;
-            ++(known ? moved : inserted);
+            ++(known ? moved_vertices : inserted);
         }
+        accept(std::move(remeshed));
     }
     EXPECT_GE(inserted, 1);
-    EXPECT_GE(moved, 1);
+    EXPECT_GE(moved_vertices, 1);
 }
 
 TEST(MovingMesh, RefusesAGiantStepAndSaysWhy) {
     const Domain domain = crossing_sphere();
     const Mesh start = improved_mesh(domain, 1);
     MovingMesh moving(domain, start, 0);
-    moving.begin_step();
-    moving.refine();
-    moving.move_boundary(0.9);
-    moving.optimise();
-    const auto refusal = moving.refusal();
+    MovedAttempt giant = move_bodies(Attempt(moving), 0.9);
+    const auto refusal = giant.refusal();
     ASSERT_TRUE(refusal);
     EXPECT_NE(refusal->why.find("cell "), std::string::npos) << refusal->why;
     EXPECT_NE(refusal->why.find(" m "), std::string::npos) << refusal->why;  // its place
     EXPECT_EQ(refusal->why.find('\n'), std::string::npos);
     ASSERT_TRUE(refusal->limiting.exists());
-    EXPECT_TRUE(alive(moving.current(), refusal->limiting));
+    EXPECT_TRUE(alive(giant.current(), refusal->limiting));
     EXPECT_GT(refusal->advised_dt, 0);
     EXPECT_LT(refusal->advised_dt, 0.9);
-    moving.refuse();
+    refuse(std::move(giant));
     EXPECT_EQ(moving.reference(), start);
     EXPECT_EQ(moving.time(), 0);
 
-    moving.begin_step();
-    EXPECT_GT(moving.refine().cells.size() + moving.refine().vertices.size(), 21u);  // it knows where it stuck
-    moving.move_boundary(1.0 / 30);
-    moving.optimise();
-    EXPECT_FALSE(moving.refusal());
-    moving.accept();
+    Attempt attempt(moving);
+    EXPECT_GT(attempt.refined().cells.size() + attempt.refined().vertices.size(), 21u);  // it knows where it stuck
+    MovedAttempt moved = move_bodies(std::move(attempt), 1.0 / 30);
+    EXPECT_FALSE(moved.refusal());
+    accept(remesh(std::move(moved)));
     EXPECT_EQ(moving.time(), 1.0 / 30);
     EXPECT_EQ(verify(moving.reference()), "");
     EXPECT_TRUE(same_shape(properties(moving.reference()), properties(start)));
-
-    moving.begin_step();
-    EXPECT_EQ(moving.refine().cells_replaced, 0);  // the trouble is over
+    EXPECT_EQ(Attempt(moving).refined().cells_replaced, 0);  // the trouble is over
 }
 
 TEST(MovingMesh, SameInputSameMeshes) {
@@ -209,14 +204,6 @@ TEST(MovingMesh, SameInputSameMeshes) {
         return moving.reference();
     };
     EXPECT_EQ(run(), run());
-}
-
-/// An attempt up to `t`; returns whether it is refused.
-bool attempt(MovingMesh& moving, double t) {
-    moving.refine();
-    moving.move_boundary(t);
-    moving.optimise();
-    return moving.refusal().has_value();
 }
 
 // Here nothing repairs what an operator for the sake of size has made as bad as it may.
@@ -232,26 +219,18 @@ TEST(MovingMesh, WhatPassesTheFloorAndStaysThereIsTakenBack) {
         MovingMesh moving(domain, improved_mesh(domain, seed), 0, careless);
         for (int i = 1; i <= 15; ++i) {
             MovingMesh other(domain, moving.reference(), moving.time(), careful);
-            moving.begin_step();
-            if (attempt(moving, i / 15.0)) break;  // with so few operators
-            moving.accept();
+            MovedAttempt moved = move_bodies(Attempt(moving), i / 15.0);
+            if (moved.refusal()) break;  // with so few operators
+            const StepStatistics done = accept(remesh(std::move(moved)));
             EXPECT_LE(worst_of(moving.reference()), careless.floor) << "step " << i;
             EXPECT_EQ(verify(moving.reference()), "") << "step " << i;
-            if (!moving.statistics().redone) continue;
+            if (!done.redone) continue;
             ++redone;
-            other.begin_step();
-            EXPECT_FALSE(attempt(other, i / 15.0));
-            other.accept();
-            EXPECT_FALSE(other.statistics().redone);
+            EXPECT_FALSE(accept(remesh(move_bodies(Attempt(other), i / 15.0))).redone);
             EXPECT_EQ(moving.reference(), other.reference()) << "step " << i;
         }
     }
     EXPECT_GE(redone, 1);
-}
-
-void expect_three_equal_meshes(const MovingMesh& moving) {
-    EXPECT_EQ(moving.before(), moving.reference());
-    EXPECT_EQ(moving.current(), moving.reference());
 }
 
 // What it has kept from its steps before must not show: a run may be resumed anywhere. Behind the body cells come out
@@ -265,12 +244,12 @@ TEST(MovingMesh, OneThatBeginsHereGoesOnLikeOneThatCame) {
     for (int i = 0; i < 24; ++i) {
         MovingMesh begins(domain, came.reference(), came.time());
         const double dt = i % 8 == 7 ? 0.4 : 0.03;  // some so large that they are refused
-        const int attempts = step(came, dt);
-        refused += attempts > 1;
-        EXPECT_EQ(step(begins, dt), attempts);
+        const Stepped stepped = step(came, dt);
+        refused += stepped.attempts > 1;
+        EXPECT_EQ(step(begins, dt).attempts, stepped.attempts);
         ASSERT_EQ(came.time(), begins.time()) << "step " << i;
         ASSERT_EQ(came.reference(), begins.reference()) << "step " << i;
-        touched = std::max(touched, came.statistics().cells_touched);
+        touched = std::max(touched, stepped.done.cells_touched);
         if (came.time() > 0.85) break;
     }
     EXPECT_LT(touched, 0.8 * count_tets(came.reference()));
@@ -278,46 +257,114 @@ TEST(MovingMesh, OneThatBeginsHereGoesOnLikeOneThatCame) {
     EXPECT_GE(refused, 1);
 }
 
-TEST(MovingMesh, AStepBeginsWithThreeEqualMeshes) {
+TEST(MovingMesh, AStepBeginsWithAMeshEqualToTheReference) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Domain domain = crossing_sphere();
         MovingMesh moving(domain, improved_mesh(domain, seed), 0);
         int remeshed = 0;
         for (int i = 0; i < 8; ++i) {
-            moving.begin_step();
-            ASSERT_NO_FATAL_FAILURE(expect_three_equal_meshes(moving)) << "step " << i;
-            ASSERT_FALSE(attempt(moving, moving.time() + 0.1));
-            remeshed += moving.accept().cells_replaced;
+            Attempt attempt(moving);
+            ASSERT_EQ(attempt.before(), moving.reference()) << "step " << i;
+            MovedAttempt moved = move_bodies(std::move(attempt), moving.time() + 0.1);
+            ASSERT_FALSE(moved.refusal());
+            remeshed += accept(remesh(std::move(moved))).remeshed.cells_replaced;
         }
-        moving.begin_step();
-        expect_three_equal_meshes(moving);
+        EXPECT_EQ(Attempt(moving).before(), moving.reference());
         EXPECT_GT(remeshed, 2000);
     }
 }
 
-TEST(MovingMesh, AfterRefusalsTooAStepBeginsWithThreeEqualMeshes) {
+TEST(MovingMesh, RefusalsLeaveTheReferenceAsItWas) {
     const Domain domain = crossing_sphere();
     MovingMesh moving(domain, improved_mesh(domain, 1), 0);
     int refined = 0;
     for (int i = 0; i < 3; ++i) {
         const Mesh reference = moving.reference();
-        for (int refusals = 0; refusals < 3; ++refusals) {  // before the later ones, refine() has work to do
-            moving.begin_step();
-            ASSERT_TRUE(attempt(moving, moving.time() + 0.95));
-            refined += moving.statistics().refined.cells_replaced;
-            EXPECT_EQ(moving.before().tets, moving.current().tets);
-            moving.refuse();
-            moving.begin_step();
-            expect_three_equal_meshes(moving);
+        for (int refusals = 0; refusals < 3; ++refusals) {  // before the later ones there is remeshing to do
+            Attempt attempt(moving);
+            refined += attempt.refined().cells_replaced;
+            MovedAttempt moved = move_bodies(std::move(attempt), moving.time() + 0.95);
+            ASSERT_TRUE(moved.refusal());
+            EXPECT_EQ(moved.before().tets, moved.current().tets);
+            refuse(std::move(moved));
             EXPECT_EQ(moving.reference(), reference);
         }
-        ASSERT_FALSE(attempt(moving, moving.time() + 0.02));
-        moving.accept();
-        moving.begin_step();
-        expect_three_equal_meshes(moving);
+        accept(remesh(move_bodies(Attempt(moving), moving.time() + 0.02)));
+        EXPECT_EQ(Attempt(moving).before(), moving.reference());
     }
     EXPECT_GT(refined, 90);
+}
+
+TEST(MovingMesh, ADroppedStageLeavesNothingBehind) {
+    const Domain domain = crossing_sphere();
+    MovingMesh dropped(domain, improved_mesh(domain, 1), 0), whole = dropped;
+    for (int i = 1; i <= 4; ++i) {
+        { const Attempt begun(dropped); }
+        { const MovedAttempt moved = move_bodies(Attempt(dropped), 0.07 * i); }
+        { const RemeshedAttempt remeshed = remesh(move_bodies(Attempt(dropped), 0.07 * i)); }
+        ASSERT_EQ(dropped.reference(), whole.reference());
+        for (MovingMesh* moving : {&dropped, &whole}) accept(remesh(move_bodies(Attempt(*moving), 0.07 * i)));
+    }
+    EXPECT_EQ(dropped.reference(), whole.reference());
+}
+
+TEST(MovingMesh, CallsOutOfOrderAreStoppedAtOnce) {
+    const Domain domain = crossing_sphere();
+    MovingMesh moving(domain, improved_mesh(domain, 1), 0);
+    Attempt begun(moving);
+    EXPECT_THROW(Attempt{moving}, std::logic_error);  // a second one
+    MovedAttempt moved = move_bodies(std::move(begun), 0.9);
+    EXPECT_THROW((void)begun.before(), std::logic_error);  // handed on
+    EXPECT_THROW((void)move_bodies(std::move(begun), 0.9), std::logic_error);
+    EXPECT_THROW(moved.move_again(std::vector<BodyPlace>{{7, {}}}), std::logic_error);
+    EXPECT_THROW((void)remesh(std::move(moved)), std::logic_error);  // it is to be refused
+    EXPECT_THROW((void)moved.current(), std::logic_error);
+    EXPECT_THROW((void)move_bodies(Attempt(moving), 0), std::logic_error);  // a step of no length
+    RemeshedAttempt remeshed = remesh(move_bodies(Attempt(moving), 0.05));
+    accept(std::move(remeshed));
+    EXPECT_THROW((void)remeshed.current(), std::logic_error);
+    EXPECT_THROW(accept(std::move(remeshed)), std::logic_error);
+    MovingMesh other = std::move(moving);
+    EXPECT_THROW((void)moving.time(), std::logic_error);
+    EXPECT_THROW(Attempt{moving}, std::logic_error);
+    EXPECT_EQ(other.time(), 0.05);
+}
+
+TEST(MovingMesh, MayGoBeforeItsAttempt) {
+    const Domain domain = crossing_sphere();
+    auto moving = std::make_unique<MovingMesh>(domain, improved_mesh(domain, 1), 0);
+    Attempt begun(*moving);
+    moving.reset();
+    EXPECT_FALSE(move_bodies(std::move(begun), 0.05).refusal());
+}
+
+/// Why a mesh is not that of a domain; empty if it is.
+std::string misfit(Domain domain, Mesh mesh) {
+    try {
+        MovingMesh(std::move(domain), std::move(mesh), 0);
+    } catch (const DomainError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(MovingMesh, IsOfAMeshThatFitsItsDomain) {
+    const Domain domain = crossing_sphere();
+    const Mesh mesh = improved_mesh(domain, 1);
+    EXPECT_EQ(misfit(domain, mesh), "");
+    Domain elsewhere = domain, alone = domain, two = domain, wider = domain;
+    elsewhere.bodies[0].shape.centre.z += 0.3;
+    EXPECT_NE(misfit(elsewhere, mesh).find("body \"body\" is not where the mesh has it"), std::string::npos);
+    alone.bodies.clear();
+    EXPECT_NE(misfit(alone, mesh).find("is of region 1, but the domain has 0 bodies"), std::string::npos);
+    two.bodies.push_back(travelling({1, 1, 1}, {1, 1, 1}, {0.2, 0.2, 0.2}));
+    EXPECT_NE(misfit(two, mesh).find("has no cells"), std::string::npos);
+    wider.box.max.x += 0.1;
+    EXPECT_NE(misfit(wider, mesh).find("off the wall x max of the domain's box"), std::string::npos);
+    Mesh turned = mesh;
+    std::swap(turned.tets[all_tets(mesh).front()][0], turned.tets[all_tets(mesh).front()][1]);
+    EXPECT_NE(misfit(domain, turned).find("the mesh has a fault: "), std::string::npos);
 }
 
 /// How often a step over `way` [m] of the crossing sphere's is refused before it succeeds, at the same dt.
@@ -327,14 +374,14 @@ int refusals_of_a_step(std::uint64_t seed, double way, SizeField size) {
     const double speed = norm(Vec3{0.2, -0.1, 2});  // all of its way, in a time of 1
     MovingMesh moving(domain, improved_mesh(domain, seed), 0);
     for (int refusals = 0; refusals < 3; ++refusals) {
-        moving.begin_step();
-        if (!attempt(moving, way / speed)) {
-            moving.accept();
+        MovedAttempt moved = move_bodies(Attempt(moving), way / speed);
+        if (!moved.refusal()) {
+            accept(remesh(std::move(moved)));
             EXPECT_EQ(verify(moving.reference()), "");
             EXPECT_LE(worst_of(moving.reference()), AdaptOptions{}.floor);
             return refusals;
         }
-        moving.refuse();
+        refuse(std::move(moved));
     }
     return 3;
 }

@@ -1,5 +1,5 @@
 #include "adapt/cases.h"
-#include "adapt/moving_mesh.h"
+#include "adapt/attempt.h"
 #include "domain/approach.h"
 
 #include <gtest/gtest.h>
@@ -18,11 +18,7 @@ Domain landing_sphere() {
 
 /// An attempt from 0 up to `t`.
 std::optional<Refusal> attempt(MovingMesh& moving, double t) {
-    moving.begin_step();
-    moving.refine();
-    moving.move_boundary(t);
-    moving.optimise();
-    return moving.refusal();
+    return move_bodies(Attempt(moving), t).refusal();
 }
 
 void expect_words(const std::string& text, std::initializer_list<const char*> words) {

@@ -2,6 +2,7 @@
 
 #include "adapt/cases.h"
 #include "adapt/stepping.h"
+#include "step/initial_mesh.h"
 #include "mesh/quality.h"
 #include "mesh/verify.h"
 
@@ -42,7 +43,7 @@ double misfits(const Mesh& mesh, const Snapshot& at) {
 void expect_constant_cost(Motion motion, int steps, int first, int window, std::uint64_t seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Domain domain = small_sphere_in_long_box(std::move(motion));
-    const Mesh start = starting_mesh(domain, seed);
+    const Mesh start = initial_mesh(domain, seed);
     MovingMesh moving(domain, start, 0);
     const double misfits_at_start = misfits(start, snapshot(domain, 0));
     std::vector<double> works, ways;
@@ -75,7 +76,7 @@ TEST(Wake, CellsLeftBehindAreCoarsenedAndThoseAheadRefined) {
 // What is beyond the cells that move is told by the mesh and the motion alone: a run may be resumed anywhere.
 TEST(Wake, OneThatBeginsHereGoesOnLikeOneThatCame) {
     const Domain domain = small_sphere_in_long_box([](double t) { return Pose{{2.4 * t - 1.2, 0.2, 0}, {}}; });
-    MovingMesh came(domain, starting_mesh(domain, 3), 0);
+    MovingMesh came(domain, initial_mesh(domain, 3), 0);
     int far_away = 0;
     for (int i = 1; i <= 12; ++i) {
         MovingMesh begins(domain, came.reference(), came.time());

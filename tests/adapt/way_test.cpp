@@ -1,7 +1,7 @@
 #include "adapt/way.h"
 
 #include "adapt/cases.h"
-#include "adapt/moving_mesh.h"
+#include "adapt/attempt.h"
 #include "base/random.h"
 #include "base/tetrahedron.h"
 #include "generate/generate.h"
@@ -95,22 +95,19 @@ Domain turning(double angle) {
 
 /// Goes on by `dt`, if it is not refused; then nothing is turned over anywhere on the way.
 bool attempt(MovingMesh& moving, double dt) {
-    moving.begin_step();
-    moving.refine();
-    moving.move_boundary(moving.time() + dt);
-    moving.optimise();
-    if (moving.refusal()) {
-        moving.refuse();
+    MovedAttempt moved = move_bodies(Attempt(moving), moving.time() + dt);
+    if (moved.refusal()) {
+        refuse(std::move(moved));
         return false;
     }
-    const Mesh &before = moving.before(), &current = moving.current();
+    const Mesh &before = moved.before(), &current = moved.current();
     for (int k = 0; k <= 10; ++k) {
         Mesh mesh = before;
         for (Vertex v : all_vertices(before)) mesh.position[v] = between(before.position[v], current.position[v], k / 10.0);
         for (Tet t : all_tets(mesh)) EXPECT_GT(volume(mesh, t), 0) << "cell " << t.value;
         for (const Prism& prism : all_prisms(mesh)) EXPECT_GT(scaled_corner_jacobian(prism_corners(mesh, prism)), 0);
     }
-    moving.accept();
+    accept(remesh(std::move(moved)));
     EXPECT_EQ(verify(moving.reference()), "");
     return true;
 }
@@ -130,18 +127,15 @@ TEST(MovingMesh, AHalfTurnInOneStepIsRefused) {
     const Domain domain = turning(std::numbers::pi);
     const Mesh start = improved_mesh(domain, 1);
     MovingMesh moving(domain, start, 0);
-    moving.begin_step();
-    moving.refine();
-    moving.move_boundary(1);
-    moving.optimise();
-    const auto refusal = moving.refusal();
+    MovedAttempt moved = move_bodies(Attempt(moving), 1);
+    const auto refusal = moved.refusal();
     ASSERT_TRUE(refusal);
     EXPECT_NE(refusal->why.find("\"top\""), std::string::npos) << refusal->why;
     EXPECT_NE(refusal->why.find("180 degrees"), std::string::npos) << refusal->why;
     const double most = std::acos(2 * least_volume_kept - 1);
     EXPECT_NEAR(refusal->advised_dt, most / std::numbers::pi, 1e-12);
-    EXPECT_EQ(moving.current(), start);
-    moving.refuse();
+    EXPECT_EQ(moved.current(), start);
+    refuse(std::move(moved));
     EXPECT_TRUE(attempt(moving, 0.1));
 }
 

@@ -4,7 +4,7 @@
 #include "../io/layered.h"
 #include "app/distribution.h"
 #include "app/hanging.h"
-#include "app/initial_mesh.h"
+#include "step/initial_mesh.h"
 #include "app/shell_jump.h"
 #include "base/error.h"
 #include "io/vtk.h"
@@ -121,11 +121,11 @@ TEST(Check, FirstTetsAreMeasuredAgainstTheLastPrisms) {
 // Also where the layer ends in thin prisms: the walls are finer there.
 TEST(Check, FirstTetsAreAtMostTwiceAsLargeAsTheLastPrisms) {
     for (const double first_height : {4e-5, 2e-5, 5e-6}) {
-        Case it;
-        it.domain.box = {{-0.002, -0.002, -0.002}, {0.002, 0.002, 0.002}};
-        it.domain.bodies = {{.name = "drop", .shape = {{}, {1e-3, 7e-4, 7e-4}, {}}}};
-        it.domain.bodies[0].layer = {.first_height = first_height};
-        EXPECT_LT(shell_jumps(initial_mesh(it), Layer(0)).back(), 2) << first_height;
+        Domain domain;
+        domain.box = {{-0.002, -0.002, -0.002}, {0.002, 0.002, 0.002}};
+        domain.bodies = {{.name = "drop", .shape = {{}, {1e-3, 7e-4, 7e-4}, {}}}};
+        domain.bodies[0].layer = {.first_height = first_height};
+        EXPECT_LT(shell_jumps(initial_mesh(domain), Layer(0)).back(), 2) << first_height;
     }
 }
 

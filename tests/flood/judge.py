@@ -175,7 +175,7 @@ def too_thick(scene, body, gap):
 def judge(case, folder, code, errors):
     """The verdict on a run that ended with `code` and these lines on stderr."""
     verdict = Verdict("done", said=errors)
-    lines = errors.splitlines()
+    lines = [line for line in errors.splitlines() if not line.startswith("kropla: warning: ")]
     if code == 0:
         verdict.faults += [f"said on stderr: {line}" for line in lines if not line.startswith("kropla: ")]
     elif code in (2, 3) and len(lines) == 1 and lines[0].startswith("kropla: "):

@@ -1,5 +1,5 @@
 #include "adapt/cases.h"
-#include "adapt/moving_mesh.h"
+#include "adapt/attempt.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "base/watch.h"
@@ -310,16 +310,16 @@ TEST(Project, AlongTheStepsOfAMovingMesh) {
     MovingMesh moving(domain, improved_mesh(domain, 1), 0);
     std::size_t changed = 0;
     for (int i = 0; i < 8; ++i) {
-        moving.begin_step();
-        moving.refine();
-        moving.move_boundary(moving.time() + 0.1);
-        moving.optimise();
-        ASSERT_FALSE(moving.refusal());
-        const Changes& changes = moving.accept();
+        MovedAttempt moved = move_bodies(Attempt(moving), moving.time() + 0.1);
+        ASSERT_FALSE(moved.refusal());
+        RemeshedAttempt remeshed = remesh(std::move(moved));
+        const Mesh before = remeshed.before();
+        const Changes changes = remeshed.remeshed();
+        accept(std::move(remeshed));
         const TransferPlan plan =
-            plan_transfer(moving.before(), moving.reference(), changes.cells, changes.vertices);
-        NodalValues field = values_at(moving.before(), linear);
-        const double content = field_integral(moving.before(), field);
+            plan_transfer(before, moving.reference(), changes.cells, changes.vertices);
+        NodalValues field = values_at(before, linear);
+        const double content = field_integral(before, field);
         (void)project(plan, field);
         for (Vertex v : all_vertices(moving.reference()))
             ASSERT_NEAR(field[v], linear(moving.reference().position[v]), 1e-12);

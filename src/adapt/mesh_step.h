@@ -1,0 +1,104 @@
+#pragma once
+
+#include "adapt/attempt.h"
+#include "adapt/correction.h"
+#include "adapt/zone.h"
+
+#include <map>
+
+namespace kropla {
+
+/// The three meshes of a moving mesh and the step it may be in: what the stages of attempt.h do, to be called in this
+/// order and guarded by them.
+///
+///     begin_step(); refine();                       // 2.1, 2.2
+///     move_boundary(t + dt); optimise();            // 2.3, 2.4
+///     if (refusal()) refuse();                      // the reference is as it was; the next refine() knows where it stuck
+///     else { remesh(); accept(); }                  // 2.6
+class MeshStep {
+public:
+    MeshStep(Domain domain, Mesh mesh, double t, const AdaptOptions& options = {});
+
+    [[nodiscard]] const Mesh& reference() const { return reference_; }
+    [[nodiscard]] double time() const { return time_; }  ///< of the reference [s]
+    [[nodiscard]] double target_time() const { return target_time_; }  ///< of the current mesh
+    [[nodiscard]] const Domain& domain() const { return domain_; }
+    [[nodiscard]] bool under_way() const { return under_way_; }
+    [[nodiscard]] const StepStatistics& statistics() const { return statistics_; }
+
+    /// An attempt is under way, until it is ended; unless it was accepted, bodies move as they did before it.
+    void begin_attempt() { under_way_ = true; }
+    void end_attempt() noexcept;
+    /// The current mesh becomes a copy of the reference.
+    void begin_step();
+    /// After a refusal, remeshes where the motion got stuck; else does nothing. The solution is to be carried
+    /// from reference() to before() at the vertices that are returned.
+    const Changes& refine();
+    /// Moves bodies to where they are at `t` [s], and their surroundings with them.
+    void move_boundary(double t);
+    /// Optimises the places of the surroundings' vertices; if a cell would be turned over on the way, goes it again in
+    /// as many legs as it takes for all cells to stay valid.
+    void optimise();
+
+    /// The current mesh is the one before the motion again, which is to end with these bodies there.
+    void correct(std::span<const BodyPlace> places);
+
+    /// The mesh of the step at its beginning and at its end: one connectivity, two sets of places. After
+    /// remesh() and accept(), before() is the mesh at the end of the step, not yet remeshed.
+    [[nodiscard]] const Mesh& before() const { return before_; }
+    [[nodiscard]] const Mesh& current() const { return current_; }
+
+    /// Empty if the motion arrived and every cell meets the floors, all along its way.
+    [[nodiscard]] std::optional<Refusal> refusal() const;
+    void refuse();
+    /// Drops the attempt under way, of which an exception may have left anything: the reference is as it was.
+    void drop() { dropped_ = true; }
+    /// Remeshes the current mesh where needed; the reference is not touched. The solution is to be carried from
+    /// before() to current() at the vertices that are returned.
+    const Changes& remesh();
+    /// The current mesh, which is remeshed, becomes the reference.
+    void accept();
+
+private:
+    struct Told {
+        CorrectedStep step;
+        Motion before;  // what the domain had
+    };
+
+    [[nodiscard]] std::optional<Refusal> what_limits() const;
+    [[nodiscard]] Refusal refused(Tet cell, const std::string& fault, double advised_dt) const;
+    [[nodiscard]] std::optional<Refusal> narrow_gap() const;
+    [[nodiscard]] std::optional<Refusal> worst_cell() const;
+    [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
+    [[nodiscard]] std::optional<Refusal> turned_too_far() const;
+    [[nodiscard]] std::optional<Refusal> turned_on_its_way() const;
+    Changes remesh(const AdaptOptions& options);  // the current mesh
+    void move_in_legs();
+    void note_turned_over(double reached);
+    bool optimise_at(double t);
+    [[nodiscard]] std::vector<Tet> cells_above(double ratio) const;
+    void note_moved();
+    void note_replaced(const Changes& changes);
+
+    Domain domain_;                          // with motions that go on from where bodies really are
+    std::vector<Motion> planned_;            // as asked for
+    std::vector<CorrectedStep> corrected_;   // per body: the last step that was told otherwise
+    std::map<std::size_t, Told> told_;       // by bodies: this step
+    AdaptOptions options_;
+    std::vector<std::vector<Vertex>> bodies_;  // the vertices of each body's cells
+    std::vector<Tet> at_inner_shells_;         // cells of bodies that do not move rigidly: at the shells of inner layers
+    Mesh reference_, before_, current_;
+    double time_, target_time_;
+    Zone zone_;                      // what the step moves
+    MoveReport way_;                 // from before() to current()
+    std::vector<Tet> refined_;       // cells that are new in the step
+    IndexSet<Tet> replaced_;         // in which slots the three meshes may differ,
+    std::vector<Vertex> moved_;      // and which vertices may have other places
+    std::vector<Vec3> trouble_;      // where the attempts refused since the last accepted step got stuck
+    std::optional<Refusal> stuck_;   // the motion did not arrive
+    bool under_way_ = false;         // an attempt
+    bool dropped_ = false;           // the other two meshes may differ from the reference anywhere
+    StepStatistics statistics_;
+};
+
+}  // namespace kropla

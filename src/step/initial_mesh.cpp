@@ -1,0 +1,59 @@
+#include "step/initial_mesh.h"
+
+#include "adapt/refusal.h"
+#include "generate/generate.h"
+#include "mesh/quality.h"
+#include "step/stuck.h"
+
+#include <cstdio>
+
+namespace kropla {
+namespace {
+
+/// That the effort allowed was spent, if it was.
+std::string spent_on(const Changes& changes) {
+    if (changes.given_up == 0) return "";
+    return "; the effort allowed was spent: " + std::to_string(changes.treated) + " cells treated, " +
+           std::to_string(changes.cut_out) + " cut out";
+}
+
+struct Draft {
+    Mesh mesh;
+    Changes changes;
+    QualitySummary quality;
+};
+
+Draft draft(const Domain& domain, std::uint64_t seed, const AdaptOptions& options) {
+    const Snapshot at = snapshot(domain, 0);
+    Draft made{generate_mesh(domain, seed, options.watch), {}, {}};
+    heed(options.watch, "improving cells", 0);
+    made.changes = improve(made.mesh, all_tets(made.mesh), at, options);
+    made.changes += repair(made.mesh, all_tets(made.mesh), at, options);
+    heed(options.watch);
+    made.quality = summarise_quality(made.mesh);
+    return made;
+}
+
+[[noreturn]] void give_up(const Domain& domain, Draft made, double floor) {
+    const Vec3 place = centroid(made.mesh, made.quality.worst);
+    char fault[80];
+    std::snprintf(fault, sizeof fault, "has R/r %.4g, limit %g", made.quality.max_aspect_ratio, floor);
+    const Refusal refusal = explained(domain, {fault, made.quality.worst, place, 0, 0, floor}, 0);
+    throw StuckError("the initial mesh cannot be made: " + refusal.why + spent_on(made.changes), place,
+                     std::move(made.mesh));
+}
+
+}  // namespace
+
+Mesh initial_mesh(const Domain& domain, const AdaptOptions& options) {
+    constexpr std::uint64_t drafts = 3;  // by other random points
+    for (std::uint64_t i = 0;; ++i) {
+        Draft made = draft(domain, options.seed + i, options);
+        if (made.quality.max_aspect_ratio <= options.floor) return in_spatial_order(made.mesh);
+        if (i + 1 == drafts) give_up(domain, std::move(made), options.floor);
+    }
+}
+
+Mesh initial_mesh(const Domain& domain, std::uint64_t seed) { return initial_mesh(domain, {.seed = seed}); }
+
+}  // namespace kropla

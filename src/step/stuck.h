@@ -1,0 +1,20 @@
+#pragma once
+
+#include "base/error.h"
+#include "mesh/mesh.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace kropla {
+
+/// A FloorError that knows where [m]; and the mesh that failed there, if there is no better one to show.
+struct StuckError : FloorError {
+    StuckError(const std::string& what, const std::optional<Vec3>& at, std::optional<Mesh> reached = {})
+        : FloorError(what), place(at), mesh(std::move(reached)) {}
+    std::optional<Vec3> place;
+    std::optional<Mesh> mesh;
+};
+
+}  // namespace kropla
