@@ -55,13 +55,13 @@ void check_faces(const Box& box, const Mesh& mesh) {
         }
 }
 
-void check_surfaces(const Domain& domain, const Mesh& mesh, double t) {
-    const Snapshot at = snapshot(domain, t);
+void check_surfaces(const Domain& domain, const Mesh& mesh, double time) {
+    const Snapshot at = snapshot(domain, time);
     const auto check = [&](std::size_t body, const Vec3& x) {
         const double off = std::abs(signed_distance(at.shapes[body], x));
         if (off <= most_off_its_shape * surface_size(at, body)) return;
         throw DomainError(named(domain.bodies[body]) + " is not where the mesh has it: a vertex of its surface at " +
-                          place_words(x) + " is " + metres(off) + " from where it stands at t = " + time_words(t));
+                          place_words(x) + " is " + metres(off) + " from where it stands at t = " + time_words(time));
     };
     for (Tet t : all_tets(mesh))
         for (std::size_t i = 0; i < 4; ++i) {
