@@ -79,6 +79,26 @@ Shape shape_of_region(const Mesh& mesh, Region region) {
     return shape_within(std::move(facets.points), facets.triangles);
 }
 
+namespace {
+
+/// Facets of the patches 0 ... 5 lie in the faces of the box, exactly.
+void check_planes(const Mesh& mesh, const Box& box) {
+    for (Tet t : all_tets(mesh))
+        for (int corner = 0; corner < 4; ++corner) {
+            const auto i = static_cast<std::size_t>(corner);
+            const int wall = mesh.patch[t][i].value, axis = wall / 2;
+            if (mesh.neighbour[t][i].exists() || wall >= box_faces) continue;
+            const double plane = wall % 2 == 0 ? box.min[axis] : box.max[axis];
+            for (Vertex v : facet_vertices(mesh, {t, corner}))
+                if (mesh.position[v][axis] != plane)
+                    throw DomainError("vertex " + std::to_string(v.value) + " at " + place_words(mesh.position[v]) +
+                                      " is of patch " + std::to_string(wall) + ", but not in " + wall_name(wall) +
+                                      ", at " + metres(plane) + "; patches from 6 on may be anywhere");
+        }
+}
+
+}  // namespace
+
 Domain domain_of(const Mesh& mesh, const SizeField& size) {
     Domain domain;
     domain.size = size;
@@ -94,6 +114,7 @@ Domain domain_of(const Mesh& mesh, const SizeField& size) {
                 walls.add(mesh, facet_vertices(mesh, {t, corner}));
         }
     domain.box = {box.min, box.max};
+    check_planes(mesh, domain.box);
     if (!walls.triangles.empty())
         domain.walls = std::make_shared<const TriangleTree>(std::move(walls.points), std::move(walls.triangles));
     return domain;

@@ -9,7 +9,8 @@ namespace kropla {
 // (0, 1), y (2, 3) and z (4, 5), in which vertices slide; facets of higher patches stay as they are.
 
 /// The domain of such a mesh, without bodies: the box that just holds it, and as its fixed walls the facets of all
-/// patches from 6 on but those of prism layers.
+/// patches from 6 on but those of prism layers. Throws DomainError, naming vertex and place, if a facet of the patches
+/// 0 ... 5 is not in the face of that box, exactly.
 [[nodiscard]] Domain domain_of(const Mesh& mesh, const SizeField& size);
 
 /// What the region's cells fill, prisms of layers inside of it too, where they are now: a shape whose surface are the
