@@ -13,15 +13,14 @@
 
 using namespace kropla;
 
-constexpr int cube = 2, rings = 6, layers = 24;            // cells from the axis to the cube's side, to the wall; along
-constexpr double half = 0.25, radius = 1, height = 0.125;  // [m] of the cube, of the cylinder, of a layer of cells
+constexpr int rings = 4, layers = 14;                     // of cells: around the axis, the first in the cube; along it
+constexpr double half = 0.25, radius = 1, height = 0.25;  // [m] of the cube; of the cylinder; of a layer
 
 /// A square grid, straight in the cube, whose outline becomes a circle outwards.
 Vec3 place(int i, int j, int k) {
     const int ring = std::max({std::abs(i), std::abs(j), 1});
-    const double x = double(i) / ring, y = double(j) / ring, out = std::max(0.0, double(ring - cube) / (rings - cube));
-    const double to_circle = radius / std::hypot(x, y), across = out == 0 ? half * ring / cube : half;
-    const double factor = i == 0 && j == 0 ? 0 : (1 - out) * across + out * to_circle;
+    const double x = double(i) / ring, y = double(j) / ring, out = double(ring - 1) / (rings - 1);
+    const double factor = (1 - out) * half + out * radius / std::max(std::hypot(x, y), half);
     return {factor * x, factor * y, height * k};
 }
 
@@ -46,7 +45,8 @@ Mesh cube_in_a_cylinder() {
     for (int n = 0; n < up * layers; ++n) {
         const int i = n % width - rings, j = n / width % width - rings, k = n / up;
         if (i == rings || j == rings) continue;
-        const bool in_cube = std::max({-i, i + 1, -j, j + 1}) <= cube && k >= 16 && k < 20, rises = (i < 0) == (j < 0);
+        const bool in_cube = std::max({-i, i + 1, -j, j + 1}) == 1 && k >= 10 && k < 12;
+        const bool rises = (i < 0) == (j < 0);  // the diagonal that points at the axis
         for (auto [p, q, r] : {std::array{n, n + 1, rises ? n + width + 1 : n + width},
                                {rises ? n : n + 1, n + width, n + width + 1}}) {  // two prisms, of three tets each
             add_tet({Vertex(p), Vertex(q), Vertex(r), Vertex(r + up)}, in_cube);
@@ -56,8 +56,8 @@ Mesh cube_in_a_cylinder() {
     }
     std::vector<BoundaryFacet> boundary;
     for (const auto& [f, cells] : cells_at) {
-        const auto at_height = [&](double z) { return std::ranges::all_of(f, [&](Vertex v) { return vertices[v].z == z; }); };
-        if (cells == 1) boundary.push_back({f, Patch(at_height(0) ? 4 : at_height(height * layers) ? 5 : 6)});
+        const auto all_at = [&](double z) { return std::ranges::all_of(f, [&](Vertex v) { return vertices[v].z == z; }); };
+        if (cells == 1) boundary.push_back({f, Patch(all_at(0) ? 4 : all_at(height * layers) ? 5 : 6)});
     }
     return make_mesh(vertices, tets, regions, boundary);
 }
@@ -80,18 +80,18 @@ void move_to(MovingMesh& moving, double end) {
 
 int main() try {
     Mesh mesh = cube_in_a_cylinder();
-    Domain domain = domain_of(mesh, {.surface = 0.125, .growth = 0.2, .far = 0.25});
+    Domain domain = domain_of(mesh, {.surface = 0.25, .growth = 0.2, .far = 0.4});
     domain.bodies.push_back({"cube", shape_of_region(mesh, Region(1)), [](double t) {
-        return Pose{{0, 0, -1.5 * t}, rotation_about({1, 1, 2}, 0.6 * t)};
+        return Pose{{0, 0, -2 * t}, rotation_about({1, 1, 2}, 0.6 * t)};
     }});
     improve(mesh, all_tets(mesh), snapshot(domain, 0));
     MovingMesh moving(domain, std::move(mesh), 0);
     std::printf("time   tets  worst R/r  touched\n");
     for (int step = 1; step <= 30; ++step) {
         move_to(moving, step / 30.0);
-        const auto quality = summarise_quality(moving.reference());
-        std::printf("%4.2f %6d %10.2f %8d\n", moving.time(), quality.tets, quality.max_aspect_ratio,
-                    moving.statistics().cells_touched);
+        const auto now = summarise_quality(moving.reference());
+        const int touched = moving.statistics().cells_touched;
+        std::printf("%4.2f %6d %10.2f %8d\n", moving.time(), now.tets, now.max_aspect_ratio, touched);
     }
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

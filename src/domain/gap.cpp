@@ -1,8 +1,8 @@
 // The distance between two shapes.
 //
-// Of two ellipsoids, or of an ellipsoid and a triangle, it is found by alternating projections [Cheney, Goldstein 1959, "Proximity maps for convex sets"]: from a
-// point of one to the nearest of the other and back. Planes across the way found bound the distance from
-// below, so that it is known when that is near enough. Among many triangles the nearest are found by trees of boxes,
+// Of two ellipsoids, or of an ellipsoid and a triangle, it is found by alternating projections [Cheney, Goldstein
+// 1959, "Proximity maps for convex sets"]: from a point of one to the nearest of the other and back. Planes across the
+// way found bound the distance from below, so that it is known when that is near enough. Among many triangles the nearest are found by trees of boxes,
 // two at once where both are triangles [Gottschalk, Lin, Manocha 1996, "OBBTree", for the descent].
 
 #include "domain/shape.h"
@@ -120,8 +120,9 @@ Shape seen_from(const Frame& frame, const Shape& shape) {
 /// Is a part of `a` within `b`, whose surfaces do not meet?
 bool is_within(const Shape& a, const Shape& b) {
     const auto inside = [&](const Vec3& x) { return signed_distance(b, x) < 0; };
-    return a.surface ? std::ranges::any_of(a.surface->point_of_parts(), inside, [&](const Vec3& x) { return frame_of(a).out_of(x); })
-                     : inside(a.centre);
+    if (!a.surface) return inside(a.centre);
+    return std::ranges::any_of(a.surface->point_of_parts(), inside,
+                               [&](const Vec3& x) { return frame_of(a).out_of(x); });
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 namespace kropla {
 
-// For meshes from elsewhere (Gmsh, TetGen, another code): built by make_mesh, improved as any other, moved by MovingMesh.
-// Bodies are regions 1, 2, ... whose surfaces lie in the mesh; facets of the patches 0 ... 5 lie in planes across x
+// For meshes from elsewhere (Gmsh, TetGen, another code): built by make_mesh, improved as any other, moved by
+// MovingMesh. Bodies are regions 1, 2, ... whose surfaces lie in the mesh; facets of the patches 0 ... 5 lie in planes across x
 // (0, 1), y (2, 3) and z (4, 5), in which vertices slide; facets of higher patches stay as they are.
 
 /// The domain of such a mesh, without bodies: the box that just holds it, and as its fixed walls the facets of all

@@ -41,8 +41,9 @@ struct Shape {
 }
 
 /// What the surface bounds, its origin at `centre` and its axes turned by `orientation`.
-[[nodiscard]] Shape shape_within(TriangulatedSurface surface, const Vec3& centre = {}, const Rotation& orientation = {});
-/// What these triangles bound where they are [m], its centre its centroid: see `make_surface`, which throws DomainError.
+[[nodiscard]] Shape shape_within(TriangulatedSurface surface, const Vec3& centre = {},
+                                 const Rotation& orientation = {});
+/// What these triangles bound where they are [m], its centre its centroid. Throws DomainError as `make_surface`.
 [[nodiscard]] Shape shape_within(std::vector<Vec3> points, const std::vector<std::array<int, 3>>& triangles);
 
 /// The shape as it stands at `pose`.

@@ -212,8 +212,8 @@ bool turn_out(const Draft& d, const std::vector<std::size_t>& part) {
         for (std::size_t other = 0; other < first.size(); ++other)
             if (other != p) around += winding(d, part, other, d.corner(first[p], 0));
         if (around == (volume[p] > 0 ? 0 : 1)) continue;
-        refuse("has a part that " + std::string(volume[p] > 0 ? "lies within another" : "is inside out") + ": that of " +
-               triangle_words(d, first[p]));
+        refuse("has a part that " + std::string(volume[p] > 0 ? "lies within another" : "is inside out") +
+               ": that of " + triangle_words(d, first[p]));
     }
     return turned;
 }

@@ -3,6 +3,7 @@
 #include "adapt/stepping.h"
 #include "base/error.h"
 #include "domain/of_mesh.h"
+#include "domain/paths.h"
 #include "domain/triangulated_surface.h"
 #include "generate/generate.h"
 #include "mesh/properties.h"
@@ -89,7 +90,8 @@ TEST(OwnMesh, TellsTheShapesOfItsRegionsAndItsWalls) {
     EXPECT_EQ(domain.box.max.z, 2.5);
     ASSERT_TRUE(domain.walls);
     EXPECT_EQ(domain.walls->triangles().size(), 4u * 8 * 10 * 2);
-    EXPECT_NEAR(gap_between(cube, *domain.walls), 1 - 0.25 * std::sqrt(2.0), 1e-14);
+    const double half_a_facet = (std::atan2(4, 3) - std::atan2(1, 1)) / 2;  // [rad], beside the diagonal
+    EXPECT_NEAR(gap_between(cube, *domain.walls), (1 - 0.25 * std::sqrt(2.0)) * std::cos(half_a_facet), 1e-14);
     EXPECT_EQ(message_of([&] { (void)shape_of_region(mesh, Region(2)); }), "the mesh has no region 2");
     EXPECT_NE(message_of([&] { (void)shape_of_region(mesh, surroundings); }).find("reaches the boundary"),
               std::string::npos);
@@ -136,9 +138,15 @@ TEST(OwnMesh, ABodyOnItsWayIntoAFixedWallIsRefusedInWords) {
     EXPECT_NEAR(surface_limit(domain, 0.4, 0.25).most, 4 * (1 - std::hypot(0.65, 0.25)), 0.2);
     EXPECT_NE(surface_limit(domain, 0.4, 0.25).why.find("from the fixed walls, too close"), std::string::npos);
     EXPECT_NE(message_of([&] { check_placement(domain, 0.72, 0.25); }).find("touches the fixed walls"), std::string::npos);
+    const auto look = [&](double end) { return look_at_paths(domain, {.start = 0, .end = end, .steps = 10, .near = 0.3}); };
+    const PathLook seen = look(0.6);
+    ASSERT_EQ(seen.closest.size(), 2u);  // to the box, and nearer to the wall within it
+    EXPECT_EQ(seen.closest[0].wall, fixed_walls);
+    EXPECT_NEAR(seen.closest[0].gap, 1 - std::hypot(0.85, 0.25), 0.02);  // which has corners
+    EXPECT_NE(message_of([&] { (void)look(0.75); }).find("motion takes it into the fixed walls at t = 7"), std::string::npos);
     MovingMesh moving(domain, std::move(mesh), 0);
     try {
-        for (int step = 1; step <= 15; ++step) step_to(moving, 0.05 * step);
+        for (int step = 1; step <= 5; ++step) step_to(moving, 0.15 * step);
         ADD_FAILURE() << "it went through the wall";
     } catch (const FloorError& error) {
         EXPECT_NE(std::string(error.what()).find("from the fixed walls"), std::string::npos) << error.what();

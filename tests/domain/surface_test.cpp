@@ -125,7 +125,8 @@ TEST(SurfaceShape, IsMadeAboutItsCentroidAndTurnedRound) {
 }
 
 TEST(SurfaceShape, MayHaveAHollowAndParts) {
-    const Triangles hollow = together(box_of_triangles({-2, -2, -2}, {2, 2, 2}), turned_round(box_of_triangles({-1, -1, -1}, {1, 1, 1})));
+    const Triangles hollow = together(box_of_triangles({-2, -2, -2}, {2, 2, 2}),
+                                      turned_round(box_of_triangles({-1, -1, -1}, {1, 1, 1})));
     const Triangles both = together(hollow, box_of_triangles({3, 0, 0}, {4, 1, 1}));
     for (const Triangles& t : {both, turned_round(both)}) {
         const TriangulatedSurface surface = surface_of(t);
