@@ -19,5 +19,6 @@ run("" ${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/examples ${without_the_
     -D CMAKE_PREFIX_PATH=${WORK}/prefix -D CMAKE_BUILD_TYPE=Release)
 run("" ${CMAKE_COMMAND} --build ${WORK}/examples)
 run("worst R/r.*\n3.00 +[0-9]+ +[3-9][.]" ${WORK}/examples/moving_sphere)
+run("worst R/r.*\n1.00 +[0-9]+ +[3-9][.]" ${WORK}/examples/own_mesh)
 
 run("" ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/library-only -D KROPLA_LIBRARY_ONLY=ON ${without_the_rest})

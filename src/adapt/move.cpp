@@ -8,6 +8,7 @@
 #include "adapt/for_all.h"
 #include "adapt/zone.h"
 #include "domain/layer_room.h"
+#include "domain/triangle_tree.h"
 #include "generate/layers.h"
 
 #include <algorithm>
@@ -73,7 +74,7 @@ double volume_within(const Box& box, const Vec3& x, double reach) {
 /// of what is in reach, it goes farther, to about as many cells.
 double reach_of(const Shape& shape, const Domain& domain) {
     constexpr double step = 0.25;
-    const double size = std::max({shape.semi_axes.x, shape.semi_axes.y, shape.semi_axes.z});
+    const double size = outer_radius(shape);
     const double whole = std::pow(2 * (1 + reach_in_body_sizes) * size, 3);
     const auto volume_in_reach = [&](double sizes) {
         return volume_within(domain.box, shape.centre, (1 + sizes) * size);
@@ -99,7 +100,7 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
     const Snapshot start = snapshot(domain, t0);
     for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
         const Shape& from = start.shapes[body];
-        const double size = std::max({from.semi_axes.x, from.semi_axes.y, from.semi_axes.z});
+        const double size = outer_radius(from);
         const double reach = reach_of(from, domain), graded = graded_distance(start, body);
         Travel travel{from, shape_at(domain.bodies[body], t1), reach, reach + size, grain_of(domain.box, size)};
         if (graded > reach && moves(travel)) travel.sized = graded + size;
@@ -130,7 +131,7 @@ double distance_to_body(const Snapshot& at, std::size_t body, const Vec3& x) {
     return std::max(d - layer_thickness(at, body, false, closest_point(shape, x)), 0.0);
 }
 
-/// The displacement of the point `x` of the surroundings. None goes across a wall.
+/// The displacement of the point `x` of the surroundings. None goes across a wall; none along fixed ones either.
 Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) {
     double total = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -147,6 +148,10 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
     for (int axis = 0; axis < 3; ++axis) {
         const double y = std::max(0.0, std::min(x[axis] - at.box.min[axis], at.box.max[axis] - x[axis]));
         u[axis] *= y * y / (y * y + least * least);
+    }
+    if (at.walls) {
+        const double squared = at.walls->nearest(x).squared_distance;
+        u *= squared / (squared + least * least);
     }
     return u;
 }

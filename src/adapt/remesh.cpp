@@ -56,6 +56,7 @@ struct Hole {
     std::vector<Facet> facets_in_mesh;
     std::vector<char> stays;                        // per facet; those on faces of the box may be exchanged
     std::vector<Vec3> points;                       // of the vertices, then new ones
+    std::set<std::pair<Patch, double>> planes;      // in which the others lie: patch, and place along its axis [m]
 };
 
 Hole boundary_of(const Mesh& mesh, const Cluster& cluster) {
@@ -77,7 +78,9 @@ Hole boundary_of(const Mesh& mesh, const Cluster& cluster) {
             }
             hole.facets.push_back(facet);
             hole.facets_in_mesh.push_back({t, i});
-            hole.stays.push_back(n.exists() || mesh.patch[t][at(i)].value >= box_faces);
+            const Patch patch = n.exists() ? Patch{} : mesh.patch[t][at(i)];
+            hole.stays.push_back(n.exists() || patch.value >= box_faces);
+            if (hole.stays.back() == 0) hole.planes.insert({patch, mesh.position[corners[0]][patch.value / 2]});
         }
     return hole;
 }
@@ -173,12 +176,12 @@ struct Filling {
     bool closed = true;  // the tets inside are bounded by the facets that stay and the box
 };
 
-/// The face of the box in which the facet lies, if it does.
-Patch face_of_box(const Box& box, const Vec3& a, const Vec3& b, const Vec3& c) {
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double plane : {box.min[axis], box.max[axis]})
-            if (a[axis] == plane && b[axis] == plane && c[axis] == plane)
-                return Patch(2 * axis + (plane == box.max[axis] ? 1 : 0));
+/// The plane patch of the mesh in which the facet lies, if it does.
+Patch plane_patch(const Hole& hole, const Vec3& a, const Vec3& b, const Vec3& c) {
+    for (const auto& [patch, plane] : hole.planes) {
+        const int axis = patch.value / 2;
+        if (a[axis] == plane && b[axis] == plane && c[axis] == plane) return patch;
+    }
     return Patch{};
 }
 
@@ -194,7 +197,7 @@ std::map<std::array<int, 3>, Facet> facets_by_vertices(const Triangulation& all)
     return seen;
 }
 
-Filling fill_hole(const Hole& hole, const Box& box, const Watch* watch) {
+Filling fill_hole(const Hole& hole, const Watch* watch) {
     const Triangulation all = triangulate(hole.points, watch);
     const auto seen = facets_by_vertices(all);
     Filling filling;
@@ -227,7 +230,7 @@ Filling fill_hole(const Hole& hole, const Box& box, const Watch* watch) {
             std::array<Vertex, 3> v{};
             for (std::size_t k = 0; k < 3; ++k) v[k] = all.tets[t][at(tet_facets[at(corner)][k])];
             const auto place = [&](std::size_t k) { return hole.points[at(v[k].value)]; };
-            const Patch face = face_of_box(box, place(0), place(1), place(2));
+            const Patch face = plane_patch(hole, place(0), place(1), place(2));
             filling.closed &= face.exists();
             filling.on_box.push_back({v, face});
         }
@@ -315,7 +318,7 @@ std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, co
         Hole hole = boundary_of(mesh, cluster);
         if (!can_be_filled(mesh, cluster, hole, at_time)) return std::nullopt;
         if (!fill_with_points(mesh, cluster, at_time, random, hole, budget, options.watch)) return std::nullopt;
-        const Filling filling = fill_hole(hole, at_time.box, options.watch);
+        const Filling filling = fill_hole(hole, options.watch);
         if (!filling.missing.empty()) {
             if (!grow_across(mesh, hole, filling.missing, cluster)) return std::nullopt;
             continue;

@@ -3,6 +3,7 @@
 // the grid takes the size no closer than one of its own cells, and what is left out on either side of the
 // surface is added in closed form: area times the integral of 1/h^3 over the distance.
 #include "app/case.h"
+#include "domain/triangulated_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +35,9 @@ double coarse_size(const Snapshot& at, const Vec3& x, double cell) {
 
 double per_volume(double edge) { return 6 * std::numbers::sqrt2 / (edge * edge * edge); }
 
-/// The area of an ellipsoid, to 1 percent (Knud Thomsen's formula, p = 1.6075).
+/// The area: of an ellipsoid to 1 percent (Knud Thomsen's formula, p = 1.6075).
 double area(const Shape& shape) {
+    if (shape.surface) return shape.surface->area();
     const Vec3 s = shape.semi_axes;
     const double p = 1.6075;
     const double mean = (std::pow(s.x * s.y, p) + std::pow(s.x * s.z, p) + std::pow(s.y * s.z, p)) / 3;

@@ -6,6 +6,7 @@
 #include "domain/approach.h"
 
 #include "base/error.h"
+#include "domain/triangle_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -26,10 +27,6 @@ bool is_finite(const Pose& pose) {
            std::ranges::all_of(pose.rotation.axes, [](const Vec3& axis) { return kropla::is_finite(axis); });
 }
 
-double largest_axis(const Shape& shape) {
-    return std::max({shape.semi_axes.x, shape.semi_axes.y, shape.semi_axes.z});
-}
-
 Pose pose_at(const Body& body, double time) {
     const Pose pose = body.motion(time);
     if (!is_finite(pose))
@@ -47,10 +44,16 @@ void refuse_outside(const Domain& domain, std::size_t body, const Bounds& held, 
                            : "ends at " + metres(domain.box.max[axis])));
 }
 
+void refuse_touching(const Domain& domain, std::size_t body, double time) {
+    throw DomainError(named(domain.bodies[body]) + ": motion takes it into the fixed walls at t = " + time_words(time));
+}
+
 void refuse_meeting(const Domain& domain, std::size_t a, std::size_t b, double time) {
     throw DomainError(named(domain.bodies[a]) + " and " + named(domain.bodies[b]) +
                       ": motion takes them into each other at t = " + time_words(time));
 }
+
+double distance_to(const TriangleTree& walls, const Vec3& x) { return std::sqrt(walls.nearest(x).squared_distance); }
 
 bool apart(const Bounds& a, const Bounds& b, int axis, double near) {
     return a.min[axis] > b.max[axis] + near || b.min[axis] > a.max[axis] + near;
@@ -65,6 +68,7 @@ double wall_gap(const Box& box, const Bounds& held, int wall) {
 
 double gap_at(const Domain& domain, const Approach& pair, double time) {
     const Shape body = placed(domain.bodies[pair.body].shape, pose_at(domain.bodies[pair.body], time));
+    if (pair.wall == fixed_walls) return gap_between(body, *domain.walls);
     if (pair.wall >= 0) return wall_gap(domain.box, bounds(body), pair.wall);
     const Body& other = domain.bodies[pair.other];
     return gap_between(body, placed(other.shape, pose_at(other, time)));
@@ -96,6 +100,11 @@ std::optional<Approach> approach_at(const Snapshot& at, const Vec3& place, doubl
         if (away < nearest) found.wall = wall;
         nearest = std::min(nearest, away);
     }
+    if (at.walls) {
+        const double away = distance_to(*at.walls, place);
+        if (away < nearest) found.wall = fixed_walls;
+        nearest = std::min(nearest, away);
+    }
     for (std::size_t other = 0; other < at.shapes.size(); ++other) {
         const double away = std::abs(signed_distance(at.shapes[other], place));
         if (other == found.body || away >= nearest) continue;
@@ -105,15 +114,17 @@ std::optional<Approach> approach_at(const Snapshot& at, const Vec3& place, doubl
     }
     if (found.wall < 0 && found.other < found.body) std::swap(found.body, found.other);
     const Shape& body = at.shapes[found.body];
-    found.gap = std::max(0.0, found.wall >= 0 ? wall_gap(at.box, bounds(body), found.wall)
-                                              : gap_between(body, at.shapes[found.other]));
+    found.gap = std::max(0.0, found.wall == fixed_walls ? gap_between(body, *at.walls)
+                              : found.wall >= 0         ? wall_gap(at.box, bounds(body), found.wall)
+                                                        : gap_between(body, at.shapes[found.other]));
     found.time = time;
     return found;
 }
 
 double width_at(const Snapshot& at, const Approach& approach, const Vec3& place) {
-    const double to_other = approach.wall >= 0 ? wall_gap(at.box, {place, place}, approach.wall)
-                                               : std::abs(signed_distance(at.shapes[approach.other], place));
+    const double to_other = approach.wall == fixed_walls ? distance_to(*at.walls, place)
+                            : approach.wall >= 0         ? wall_gap(at.box, {place, place}, approach.wall)
+                                                 : std::abs(signed_distance(at.shapes[approach.other], place));
     return std::abs(signed_distance(at.shapes[approach.body], place)) + to_other;
 }
 
@@ -147,7 +158,7 @@ double way_between(const Shape& shape, const Pose& a, const Pose& b) {
     double turned = 0;  // the most that a vector of unit length is changed, but for a factor below sqrt 3
     for (std::size_t i = 0; i < 3; ++i)
         turned = std::max(turned, distance(a.rotation.axes[i], b.rotation.axes[i]));
-    return distance(a.displacement, b.displacement) + turned * largest_axis(shape);
+    return distance(a.displacement, b.displacement) + turned * outer_radius(shape);
 }
 
 void Approaches::look(const Instant& now) {
@@ -160,6 +171,8 @@ void Approaches::look(const Instant& now) {
     for (const Shape& shape : now.shapes) held.push_back(bounds(shape));
     for (std::size_t body = 0; body < held.size(); ++body)
         for (int wall = 0; wall < 6; ++wall) look_at_wall(now, body, held[body], wall);
+    if (domain_.walls)
+        for (std::size_t body = 0; body < held.size(); ++body) look_at_fixed_walls(now, body);
     for (const auto& [a, b] : pairs_within(held, near_)) look_at_pair(now, a, b);
     last_ = now;
 }
@@ -170,15 +183,30 @@ void Approaches::look_at_wall(const Instant& now, std::size_t body, const Bounds
     if (gap >= near_) return;
     const Seen unseen{{body, wall, 0, infinity, 0}, 0, 0, 0};
     Seen& seen = walls_.try_emplace(6 * body + static_cast<std::size_t>(wall), unseen).first->second;
+    note(seen, gap, now.time);
+}
+
+void Approaches::note(Seen& seen, double gap, double time) const {
     if (gap >= seen.best.gap) return;
     seen.best.gap = gap;
-    seen.best.time = now.time;
+    seen.best.time = time;
     seen.sample = times_.size() - 1;
+}
+
+void Approaches::look_at_fixed_walls(const Instant& now, std::size_t body) {
+    const Seen unseen{{body, fixed_walls, 0, infinity, 0}, 0, 0, 0};
+    const auto [place, is_new] = fixed_walls_.try_emplace(body, unseen);
+    Seen& seen = place->second;
+    if (!is_new && seen.gap - (travelled_[body] - seen.travelled) >= std::min(seen.best.gap, near_)) return;
+    seen.gap = gap_between(now.shapes[body], *domain_.walls);
+    seen.travelled = travelled_[body];
+    if (seen.gap == 0) refuse_touching(domain_, body, now.time);
+    if (seen.gap < near_) note(seen, seen.gap, now.time);
 }
 
 void Approaches::look_at_pair(const Instant& now, std::size_t a, std::size_t b) {
     const Shape &first = now.shapes[a], &second = now.shapes[b];
-    const double least = distance(first.centre, second.centre) - largest_axis(first) - largest_axis(second);
+    const double least = distance(first.centre, second.centre) - outer_radius(first) - outer_radius(second);
     if (least >= near_) return;
     const Seen unseen{{a, -1, b, infinity, 0}, 0, 0, 0};
     const auto [place, is_new] = pairs_.try_emplace(a * now.shapes.size() + b, unseen);
@@ -188,10 +216,7 @@ void Approaches::look_at_pair(const Instant& now, std::size_t a, std::size_t b) 
     seen.gap = gap_between(first, second);
     seen.travelled = travelled;
     if (seen.gap == 0) refuse_meeting(domain_, a, b, now.time);
-    if (seen.gap >= seen.best.gap) return;
-    seen.best.gap = seen.gap;
-    seen.best.time = now.time;
-    seen.sample = times_.size() - 1;
+    note(seen, seen.gap, now.time);
 }
 
 /// By golden sections between the samples before and after the best one.
@@ -227,12 +252,14 @@ Approach Approaches::narrowed(const Seen& seen) const {
 
 std::vector<Approach> Approaches::nearest() const {
     std::vector<Approach> all;
-    for (const auto* seen_of : {&walls_, &pairs_})
+    for (const auto* seen_of : {&walls_, &fixed_walls_, &pairs_})
         for (const auto& [key, seen] : *seen_of) {
+            if (seen.best.gap == infinity) continue;  // never near
             all.push_back(narrowed(seen));
             const Approach& found = all.back();
             if (found.gap > 0 || seen.best.gap == 0) continue;
             if (found.wall < 0) refuse_meeting(domain_, found.body, found.other, found.time);
+            if (found.wall == fixed_walls) refuse_touching(domain_, found.body, found.time);
             const Bounds held = bounds(shape_at(domain_.bodies[found.body], found.time));
             refuse_outside(domain_, found.body, held, found.wall, found.time);
         }

@@ -62,7 +62,9 @@ private:
         double travelled = 0;       // [m] by both until then
     };
     void look_at_wall(const Instant& now, std::size_t body, const Bounds& held, int wall);
+    void look_at_fixed_walls(const Instant& now, std::size_t body);
     void look_at_pair(const Instant& now, std::size_t a, std::size_t b);
+    void note(Seen& seen, double gap, double time) const;
     [[nodiscard]] Approach narrowed(const Seen& seen) const;
 
     const Domain& domain_;
@@ -70,7 +72,7 @@ private:
     Instant last_;
     std::vector<double> times_;      // looked at
     std::vector<double> travelled_;  // per body [m]
-    std::unordered_map<std::size_t, Seen> pairs_, walls_;
+    std::unordered_map<std::size_t, Seen> pairs_, walls_, fixed_walls_;
 };
 
 }  // namespace kropla

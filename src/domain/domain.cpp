@@ -18,6 +18,7 @@ Shape shape_at(const Body& body, double t) { return placed(body.shape, body.moti
 
 Snapshot snapshot(const Domain& domain, double t) {
     Snapshot at{domain.box, domain.size, {}};
+    at.walls = domain.walls;
     at.size.growth = std::min(at.size.growth, steepest_growth);
     for (const Body& body : domain.bodies) {
         at.shapes.push_back(shape_at(body, t));

@@ -12,7 +12,8 @@
 
 namespace kropla {
 
-/// The box around everything. Its faces are the patches 0 ... 5: x min, x max, y min, y max, z min, z max.
+/// The box around everything. Its faces are the patches 0 ... 5: x min, x max, y min, y max, z min, z max. A mesh from
+/// elsewhere need not have them all; those it has lie on the box.
 struct Box {
     Vec3 min, max;  // [m]
 };
@@ -64,11 +65,16 @@ struct SizeField {
     double far = 8e-4;      // [m], at least surface
 };
 
+/// Among walls, which are the faces of the box, 0 ... 5, the number of what Domain::walls holds.
+inline constexpr int fixed_walls = box_faces;
+
 /// What is meshed: body i is region i + 1, the rest of the box is region 0.
 struct Domain {
     Box box;
     std::vector<Body> bodies;
     SizeField size;
+    std::shared_ptr<const TriangleTree> walls = {};  // fixed ones beside the box's faces, of a mesh from elsewhere
+                                                     //   (of_mesh.h); none in a mesh of generate_mesh
 };
 
 [[nodiscard]] inline Region region_of_body(std::size_t body) { return Region(body + 1); }
@@ -82,6 +88,7 @@ struct Snapshot {
     SizeField size;
     std::vector<Shape> shapes;
     std::vector<std::optional<LayerOptions>> layers = {};  // per body
+    std::shared_ptr<const TriangleTree> walls = {};
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
 
@@ -98,7 +105,7 @@ struct Snapshot {
 [[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
 
 /// How far at most the vertices of a body's surface stand outside of its shape [m], so that the polyhedron
-/// has the body's volume (generate.h), at triangles of edge length `size` [m].
+/// has the body's volume (generate.h), at triangles of edge length `size` [m]; not at all of a surface of triangles.
 [[nodiscard]] double outward_shift(const Shape& shape, double size);
 
 /// What keeps size.surface from being larger.

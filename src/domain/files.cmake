@@ -1,5 +1,9 @@
 list(APPEND KROPLA_MESH_FILES
     domain/shape.cpp
+    domain/triangle.cpp
+    domain/triangle_tree.cpp
+    domain/triangulated_surface.cpp
+    domain/of_mesh.cpp
     domain/domain.cpp
     domain/gap.cpp
     domain/layer_fit.cpp

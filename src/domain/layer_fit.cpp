@@ -18,6 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// "; the largest layer that fits is 3.3e-05 m thick: layer.first_height of at most 5.3e-06 m, or ..."
 std::string advice(const LayerOptions& layer, double room) {
+    if (!std::isfinite(room)) return "";
     std::string text = "; the largest layer that fits is " + metres(rounded_down(room)) + " thick";
     const double height = layer.first_height * (room / thickness(layer)),
                  growth = fitting_growth(layer, room);  // below 1 it is no advice
@@ -43,6 +44,10 @@ std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t
     for (int wall = 0; wall < 6; ++wall) {
         const double gap = wall_gap(at.box, held, wall);
         found.push_back({gap, share_of_gap * (gap - out(body)), own, wall_name(wall)});
+    }
+    if (at.walls) {
+        const double gap = gap_between(at.shapes[body], *at.walls);
+        found.push_back({gap, share_of_gap * (gap - out(body)), own, wall_name(fixed_walls)});
     }
     for (std::size_t other = 0; other < at.shapes.size(); ++other) {
         if (other == body) continue;

@@ -7,6 +7,8 @@
 
 #include "domain/layer_room.h"
 
+#include "domain/triangle_tree.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,8 +19,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The radius of the largest ball inside the shape that touches its surface at `x` [m].
+/// The radius of the largest ball inside the shape that touches its surface at `x` [m]. Of a surface of triangles,
+/// infinite: a layer inside of it is the mesh's, which moves as one with the body and has shown that it fits.
 double touching_ball(const Shape& shape, const Vec3& x) {
+    if (shape.surface) return infinity;
     const Vec3& a = shape.semi_axes;
     const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
     const double tangent_plane = 1 / norm({p.x / (a.x * a.x), p.y / (a.y * a.y), p.z / (a.z * a.z)});
@@ -45,6 +49,10 @@ Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x) {
             const double room = share_of_gap * (gap - own);
             if (room < least.room) least = {gap, room, 2 * axis + side, body};
         }
+    if (at.walls) {
+        const double gap = std::sqrt(at.walls->nearest(x).squared_distance), room = share_of_gap * (gap - own);
+        if (room < least.room) least = {gap, room, fixed_walls, body};
+    }
     for (std::size_t other = 0; other < at.shapes.size(); ++other) {
         if (other == body) continue;
         const double gap = signed_distance(at.shapes[other], x);

@@ -19,7 +19,7 @@ inline constexpr double share_inside = 0.5;
 struct Gap {
     double distance;   // [m] from the point; infinite in the open; not positive within the obstacle
     double room;       // [m] the greatest thickness that a layer may have there, between the polyhedra
-    int wall;          // the obstacle: a face of the box, 0 ... 5; -1: a body
+    int wall;          // the obstacle: a face of the box, 0 ... 5, or the fixed walls; -1: a body
     std::size_t body;  // that body, where it is one
 };
 [[nodiscard]] Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x);

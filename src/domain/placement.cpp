@@ -75,6 +75,8 @@ SizeLimit surface_limit(const Domain& domain, double t, double least_gap) {
                               overstep(domain.box, held.back(), wall.wall));
         lower_by_gap(limit, domain, wall, least_gap);
         out = std::max(out, 2 * stand_out(domain, wall));
+        if (at.walls)
+            lower_by_gap(limit, domain, {i, fixed_walls, 0, gap_between(shape, *at.walls), t}, least_gap);
         const double radius = least_curvature_radius(shape);
         lower(limit, radius,
               named(domain.bodies[i]) + " is curved with a radius of " + metres(radius) + ", too little");

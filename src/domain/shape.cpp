@@ -1,4 +1,4 @@
-// Ellipsoids and their rigid motion.
+// Ellipsoids, what triangles bound, and their rigid motion.
 //
 // The closest point follows [Eberly 2013, "Distance from a Point to an Ellipse, an Ellipsoid, or a
 // Hyperellipsoid"]: the largest root of one convex, falling function of one variable. Changed against it: the
@@ -7,10 +7,14 @@
 
 #include "domain/shape.h"
 
+#include "domain/triangulated_surface.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace kropla {
 
@@ -32,8 +36,19 @@ Rotation operator*(const Rotation& second, const Rotation& first) {
     return {{rotated(second, first.axes[0]), rotated(second, first.axes[1]), rotated(second, first.axes[2])}};
 }
 
+Shape shape_within(TriangulatedSurface surface, const Vec3& centre, const Rotation& orientation) {
+    const Vec3 half = 0.5 * (surface.extent().max - surface.extent().min);
+    return {centre, half, orientation, std::make_shared<const TriangulatedSurface>(std::move(surface))};
+}
+
+Shape shape_within(std::vector<Vec3> points, const std::vector<std::array<int, 3>>& triangles) {
+    const Vec3 centre = make_surface(points, triangles).centroid();
+    for (Vec3& x : points) x -= centre;
+    return shape_within(make_surface(std::move(points), triangles), centre);
+}
+
 Shape placed(const Shape& start, const Pose& pose) {
-    return {start.centre + pose.displacement, start.semi_axes, pose.rotation * start.orientation};
+    return {start.centre + pose.displacement, start.semi_axes, pose.rotation * start.orientation, start.surface};
 }
 
 Vec3 placed(const Shape& start, const Pose& pose, const Vec3& at_start) {
@@ -98,18 +113,21 @@ Vec3 closest_on_sphere(const Shape& sphere, const Vec3& x) {
 }  // namespace
 
 double volume(const Shape& shape) {
+    if (shape.surface) return shape.surface->volume();
     return 4 * std::numbers::pi / 3 * shape.semi_axes.x * shape.semi_axes.y * shape.semi_axes.z;
 }
 
-Shape through(const Shape& shape, const Vec3& x) {
-    const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
-    const Vec3& a = shape.semi_axes;
-    return {shape.centre, norm({p.x / a.x, p.y / a.y, p.z / a.z}) * a, shape.orientation};
+Shape through(const Shape& ellipsoid, const Vec3& x) {
+    assert(!ellipsoid.surface);
+    const Vec3 p = rotated_back(ellipsoid.orientation, x - ellipsoid.centre);
+    const Vec3& a = ellipsoid.semi_axes;
+    return {ellipsoid.centre, norm({p.x / a.x, p.y / a.y, p.z / a.z}) * a, ellipsoid.orientation};
 }
 
 double signed_distance(const Shape& shape, const Vec3& x) {
     if (is_sphere(shape)) return distance(x, shape.centre) - shape.semi_axes.x;
     const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
+    if (shape.surface) return shape.surface->signed_distance(p);
     const double far = distance(p, closest_on_ellipsoid(shape.semi_axes, p));
     const Vec3 scaled = {p.x / shape.semi_axes.x, p.y / shape.semi_axes.y, p.z / shape.semi_axes.z};
     return squared_norm(scaled) < 1 ? -far : far;
@@ -118,14 +136,37 @@ double signed_distance(const Shape& shape, const Vec3& x) {
 Vec3 closest_point(const Shape& shape, const Vec3& x) {
     if (is_sphere(shape)) return closest_on_sphere(shape, x);
     const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
-    return shape.centre + rotated(shape.orientation, closest_on_ellipsoid(shape.semi_axes, p));
+    const Vec3 closest = shape.surface ? shape.surface->closest_point(p) : closest_on_ellipsoid(shape.semi_axes, p);
+    return shape.centre + rotated(shape.orientation, closest);
+}
+
+double outer_radius(const Shape& shape) {
+    return shape.surface ? shape.surface->farthest() : greatest(shape.semi_axes);
 }
 
 double least_curvature_radius(const Shape& shape) {
+    if (shape.surface) return std::numeric_limits<double>::infinity();
     return least(shape.semi_axes) * (least(shape.semi_axes) / greatest(shape.semi_axes));
 }
 
+namespace {
+
+/// How far the triangles reach along the axis of space, from the centre, to either side.
+Bounds bounds_of_surface(const Shape& shape) {
+    Bounds held{shape.centre, shape.centre};
+    for (int i = 0; i < 3; ++i) {
+        const auto& axes = shape.orientation.axes;
+        const Vec3 axis = {axes[0][i], axes[1][i], axes[2][i]};
+        held.min[i] -= shape.surface->tree().reach_along(-axis);
+        held.max[i] += shape.surface->tree().reach_along(axis);
+    }
+    return held;
+}
+
+}  // namespace
+
 Bounds bounds(const Shape& shape) {
+    if (shape.surface) return bounds_of_surface(shape);
     Vec3 half;
     for (int i = 0; i < 3; ++i) {
         const auto& axes = shape.orientation.axes;

@@ -3,6 +3,8 @@
 #include "base/vec3.h"
 
 #include <array>
+#include <memory>
+#include <vector>
 
 namespace kropla {
 
@@ -22,16 +24,27 @@ struct Pose {
     Rotation rotation;
 };
 
-/// The shape of a body: an ellipsoid; a sphere is one with equal semi-axes.
+class TriangulatedSurface;  // triangulated_surface.h
+class TriangleTree;         // triangle_tree.h
+
+/// The shape of a body: an ellipsoid, of which a sphere is one with equal semi-axes; or what a surface of triangles
+/// bounds, which is shared by all copies: see `shape_within`.
 struct Shape {
     Vec3 centre;            // [m]
-    Vec3 semi_axes;         // [m], each positive
+    Vec3 semi_axes;         // [m], each positive; of a surface: half the extents along its own axes
     Rotation orientation;
+    std::shared_ptr<const TriangulatedSurface> surface = {};  // about the centre, by its own axes; none: an ellipsoid
 };
 
 [[nodiscard]] inline bool is_sphere(const Shape& s) {
-    return s.semi_axes.x == s.semi_axes.y && s.semi_axes.y == s.semi_axes.z;
+    return s.semi_axes.x == s.semi_axes.y && s.semi_axes.y == s.semi_axes.z && !s.surface;
 }
+
+/// What the surface bounds, its origin at `centre` and its axes turned by `orientation`.
+[[nodiscard]] Shape shape_within(TriangulatedSurface surface, const Vec3& centre = {},
+                                 const Rotation& orientation = {});
+/// What these triangles bound where they are [m], its centre its centroid. Throws DomainError as `make_surface`.
+[[nodiscard]] Shape shape_within(std::vector<Vec3> points, const std::vector<std::array<int, 3>>& triangles);
 
 /// The shape as it stands at `pose`.
 [[nodiscard]] Shape placed(const Shape& start, const Pose& pose);
@@ -40,17 +53,23 @@ struct Shape {
 
 /// The volume inside [m^3].
 [[nodiscard]] double volume(const Shape& shape);
-/// The shape blown up, or shrunk, about its centre until `x`, which is not the centre, is on its surface.
-[[nodiscard]] Shape through(const Shape& shape, const Vec3& x);
+/// The ellipsoid blown up, or shrunk, about its centre until `x`, which is not the centre, is on its surface.
+[[nodiscard]] Shape through(const Shape& ellipsoid, const Vec3& x);
 /// The distance from `x` to the surface [m], negative inside. Exact to rounding.
 [[nodiscard]] double signed_distance(const Shape& shape, const Vec3& x);
 /// The point of the surface nearest to `x`.
 [[nodiscard]] Vec3 closest_point(const Shape& shape, const Vec3& x);
-/// The least radius of curvature of the surface [m].
+/// The radius of the smallest ball about the centre that holds the shape [m].
+[[nodiscard]] double outer_radius(const Shape& shape);
+/// The least radius of curvature that triangles on the surface have to resolve [m]: infinite for a surface of
+/// triangles, edges or not, since these are the mesh's.
 [[nodiscard]] double least_curvature_radius(const Shape& shape);
-/// The distance between two surfaces [m], of spheres exact, else to 1e-9 and not above; 0 if the shapes
-/// overlap.
+/// The distance between two surfaces [m]; 0 if the shapes overlap. Of spheres exact; with an ellipsoid to 1e-9 and not
+/// above; of triangles exact to rounding, in a time that grows with the logarithm of their number where few are near.
 [[nodiscard]] double gap_between(const Shape& a, const Shape& b);
+/// The same between a shape and triangles that need not bound anything; 0 if the shape meets them. What they may
+/// enclose is not asked.
+[[nodiscard]] double gap_between(const Shape& shape, const TriangleTree& triangles);
 /// The corners of the axis-parallel box that just holds the shape.
 struct Bounds { Vec3 min, max; };
 [[nodiscard]] Bounds bounds(const Shape& shape);

@@ -49,6 +49,7 @@ double rounded_down(double value) {
 std::string named(const Body& body) { return "body \"" + body.name + "\""; }
 
 std::string wall_name(int wall) {
+    if (wall == fixed_walls) return "the fixed walls";
     return std::string("the wall ") + "xyz"[wall / 2] + (wall % 2 == 0 ? " min" : " max");
 }
 

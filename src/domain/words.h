@@ -22,13 +22,13 @@ namespace kropla {
 
 /// "body "droplet""
 [[nodiscard]] std::string named(const Body& body);
-/// "the wall z min", of the face of the box 0 ... 5
+/// "the wall z min", of the face of the box 0 ... 5; or "the fixed walls"
 [[nodiscard]] std::string wall_name(int wall);
 
 /// Two things that come near each other: a body, and a face of the box or another body.
 struct Approach {
     std::size_t body = 0;
-    int wall = -1;          // the face of the box, 0 ... 5; -1: it is another body
+    int wall = -1;          // the face of the box, 0 ... 5, or the fixed walls; -1: it is another body
     std::size_t other = 0;  // that body
     double gap = 0;         // [m] between the surfaces; 0 if they touch or overlap
     double time = 0;        // [s] when it is so

@@ -34,7 +34,7 @@ struct Surface {
 /// Scales a surface around a shape's centre about it, until the polyhedron holds the shape's volume.
 void give_volume(Surface& surface, const Shape& shape);
 
-/// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]. The polyhedron
+/// Covers the surface of an ellipsoid with well-shaped triangles of edge length near `size` [m]. The polyhedron
 /// holds the shape's volume to rounding: its vertices lie on the shape blown up about its centre,
 /// `outward_shift` (domain.h) away from its surface at most, and that surface runs between them and the
 /// triangles' middles.
@@ -54,8 +54,8 @@ struct PointSet {
 /// faces of the box as patches, and the prism layers that bodies have: a body's outside before its inside,
 /// tets ending at walls and shells. Where a triangle of a surface is not a facet, points that stand in its
 /// way are removed and surface points are added until it is.
-/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform; Interrupted if the
-/// watch says so.
+/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform, or a body is none
+/// of the ellipsoids; Interrupted if the watch says so.
 [[nodiscard]] Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch = nullptr);
 
 /// The mesh without free slots, its vertices and cells numbered along a Hilbert curve, so that what is near in

@@ -258,6 +258,10 @@ Mesh assembled(const std::vector<Surface>& walls, const std::vector<FilledRoom>&
 
 Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch) {
     constexpr int recoveries = 20;
+    for (const Body& body : domain.bodies)
+        if (body.shape.surface)
+            throw DomainError(named(body) + ": its surface is of triangles, around which no mesh is generated; a mesh "
+                              "that has them as facets can be brought (domain/of_mesh.h)");
     check_placement(domain, 0, least_gap_in_sizes);
     check_layers(domain, 0);
     const Snapshot at = snapshot(domain, 0);

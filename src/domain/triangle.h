@@ -1,0 +1,27 @@
+#pragma once
+
+#include "base/vec3.h"
+
+#include <array>
+
+namespace kropla {
+
+/// A triangle in space, by its corners [m].
+using Corners = std::array<Vec3, 3>;
+
+/// What of a triangle is nearest: its inside, the edge from corner i to the next, or corner i.
+enum class TrianglePart { inside, edge_0, edge_1, edge_2, corner_0, corner_1, corner_2 };
+
+struct OnTriangle {
+    Vec3 point;
+    TrianglePart part;
+};
+/// The point of the triangle, which has an area, nearest to `x`.
+[[nodiscard]] OnTriangle closest_on_triangle(const Corners& triangle, const Vec3& x);
+
+/// Does an edge of one go through the inside of the other? Exact; where they only touch, no.
+[[nodiscard]] bool pierce(const Corners& a, const Corners& b);
+/// The squared distance between two triangles [m^2]; 0 where they pierce each other.
+[[nodiscard]] double squared_distance(const Corners& a, const Corners& b);
+
+}  // namespace kropla

@@ -1,0 +1,277 @@
+// Closed surfaces of triangles.
+//
+// Whether a point is inside is told by the pseudonormal of what is nearest to it, weighted by angles at a corner
+// [Baerentzen, Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal"]: right for every
+// closed surface, convex or not, also where an edge or a corner is nearest. What part of a triangle is nearest is told
+// once, with the nearest place, so that both agree.
+
+#include "domain/triangulated_surface.h"
+
+#include "base/error.h"
+#include "domain/words.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace kropla {
+
+namespace {
+
+using Triangle = std::array<int, 3>;
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t next(std::size_t corner) { return (corner + 1) % 3; }
+
+/// Triangles that are looked at before they become a surface.
+struct Draft {
+    std::span<const Vec3> points;
+    std::span<Triangle> triangles;
+
+    [[nodiscard]] const Vec3& corner(std::size_t t, std::size_t i) const { return points[at(triangles[t][i])]; }
+    [[nodiscard]] Corners corners(std::size_t t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
+};
+
+Vec3 twice_area(const Corners& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+
+[[noreturn]] void refuse(const std::string& what) { throw DomainError("the surface " + what); }
+
+std::string triangle_words(const Draft& d, std::size_t t) {
+    const auto [a, b, c] = d.corners(t);
+    return "triangle " + std::to_string(t) + " at " + place_words((a + b + c) / 3);
+}
+std::string point_words(const Draft& d, int point) {
+    return "point " + std::to_string(point) + " at " + place_words(d.points[at(point)]);
+}
+std::string edge_words(const Draft& d, int a, int b) {
+    return "the edge from " + point_words(d, a) + " to " + point_words(d, b);
+}
+
+/// May rounding of the corners' coordinates be all that the triangle's height is?
+bool is_flat(const Corners& t) {
+    double largest = 0, longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(t[i][axis]));
+        longest = std::max(longest, distance(t[i], t[next(i)]));
+    }
+    return !(norm(twice_area(t)) > 4 * std::numeric_limits<double>::epsilon() * largest * longest);
+}
+
+void check_values(const Draft& d) {
+    if (d.triangles.empty()) refuse("has no triangles");
+    for (std::size_t i = 0; i < d.points.size(); ++i)
+        if (!is_finite(d.points[i])) refuse("has a point that is not finite: point " + std::to_string(i));
+    for (std::size_t t = 0; t < d.triangles.size(); ++t) {
+        for (int corner : d.triangles[t])
+            if (corner < 0 || at(corner) >= d.points.size())
+                refuse("has a triangle " + std::to_string(t) + " with a point " + std::to_string(corner) +
+                       ", which does not exist: there are " + std::to_string(d.points.size()));
+        if (is_flat(d.corners(t))) refuse("has a triangle of no area: " + triangle_words(d, t));
+    }
+}
+
+/// Per triangle and edge, from corner i to the next, the triangle beyond and its edge.
+struct Beyond {
+    std::size_t triangle, edge;
+};
+using Neighbours = std::vector<std::array<Beyond, 3>>;
+
+Neighbours neighbours(const Draft& d) {
+    struct Side {
+        int low, high;
+        std::size_t triangle, edge;
+        bool rising;
+    };
+    std::vector<Side> sides;
+    for (std::size_t t = 0; t < d.triangles.size(); ++t)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const int a = d.triangles[t][i], b = d.triangles[t][next(i)];
+            sides.push_back({std::min(a, b), std::max(a, b), t, i, a < b});
+        }
+    std::ranges::sort(sides, {}, [](const Side& s) { return std::pair(std::pair(s.low, s.high), s.triangle); });
+    Neighbours beyond(d.triangles.size());
+    for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+        while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
+        const Side& one = sides[i];
+        const std::string edge = end - i == 2 ? "" : edge_words(d, one.low, one.high);
+        if (end - i == 1)
+            refuse("is not closed: " + edge + " has but one triangle, " + std::to_string(one.triangle));
+        if (end - i > 2)
+            refuse("is not a manifold: " + edge + " has " + std::to_string(end - i) + " triangles");
+        const Side& other = sides[i + 1];
+        if (one.rising == other.rising)
+            refuse("has triangles that are turned against each other: " + std::to_string(one.triangle) + " and " +
+                   std::to_string(other.triangle) + " at " + edge_words(d, one.low, one.high));
+        beyond[one.triangle][one.edge] = {other.triangle, other.edge};
+        beyond[other.triangle][other.edge] = {one.triangle, one.edge};
+    }
+    return beyond;
+}
+
+/// The triangles around each point are one ring.
+void check_rings(const Draft& d, const Neighbours& beyond) {
+    std::vector<std::size_t> corners_at(d.points.size(), 0);
+    std::vector<char> is_known(d.points.size(), 0);
+    for (const Triangle& triangle : d.triangles)
+        for (int point : triangle) ++corners_at[at(point)];
+    for (std::size_t t = 0; t < d.triangles.size(); ++t)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const int point = d.triangles[t][i];
+            if (std::exchange(is_known[at(point)], 1) != 0) continue;
+            std::size_t around = 0;
+            Beyond here{t, i};  // the edge that begins at the point
+            do {
+                const Beyond there = beyond[here.triangle][here.edge];
+                here = {there.triangle, next(there.edge)};
+                ++around;
+            } while (here.triangle != t);
+            if (around != corners_at[at(point)]) refuse("touches itself at " + point_words(d, point));
+        }
+}
+
+/// Per triangle, the number of the connected part it is of.
+std::vector<std::size_t> parts_of(const Neighbours& beyond) {
+    constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+    std::vector<std::size_t> part(beyond.size(), none), reached;
+    std::size_t parts = 0;
+    for (std::size_t first = 0; first < beyond.size(); ++first) {
+        if (part[first] != none) continue;
+        part[first] = parts;
+        reached = {first};
+        while (!reached.empty()) {
+            const std::size_t t = reached.back();
+            reached.pop_back();
+            for (const Beyond& b : beyond[t])
+                if (std::exchange(part[b.triangle], parts) == none) reached.push_back(b.triangle);
+        }
+        ++parts;
+    }
+    return part;
+}
+
+bool share_a_corner(const Triangle& a, const Triangle& b) {
+    return std::ranges::any_of(a, [&](int corner) { return std::ranges::find(b, corner) != b.end(); });
+}
+
+void check_crossings(const Draft& d) {
+    std::vector<Extent> boxes;
+    for (std::size_t t = 0; t < d.triangles.size(); ++t) boxes.push_back(extent(d.corners(t)));
+    const BoxTree tree(boxes);
+    for (std::size_t t = 0; t < d.triangles.size(); ++t)
+        tree.any(boxes[t], [&](std::size_t other) {
+            if (other <= t || share_a_corner(d.triangles[t], d.triangles[other])) return false;
+            if (pierce(d.corners(t), d.corners(other)))
+                refuse("cuts itself: " + triangle_words(d, t) + " and " + triangle_words(d, other));
+            return false;
+        });
+}
+
+/// Six times the volume below the triangle, seen from `origin`.
+double volume_below(const Corners& t, const Vec3& origin) {
+    return determinant(t[0] - origin, t[1] - origin, t[2] - origin);
+}
+
+/// How often a part goes round `x`, which is not on it: 1 or -1 inside, 0 outside [Van Oosterom, Strackee 1983].
+int winding(const Draft& d, const std::vector<std::size_t>& part, std::size_t of, const Vec3& x) {
+    double angle = 0;
+    for (std::size_t t = 0; t < d.triangles.size(); ++t) {
+        if (part[t] != of) continue;
+        const Vec3 a = d.corner(t, 0) - x, b = d.corner(t, 1) - x, c = d.corner(t, 2) - x;
+        const double u = norm(a), v = norm(b), w = norm(c);
+        angle += 2 * std::atan2(determinant(a, b, c), u * v * w + dot(a, b) * w + dot(b, c) * u + dot(c, a) * v);
+    }
+    return static_cast<int>(std::lround(angle / (4 * std::numbers::pi)));
+}
+
+/// The first triangle of each part.
+std::vector<std::size_t> first_of_parts(const std::vector<std::size_t>& part) {
+    std::vector<std::size_t> first;
+    for (std::size_t t = 0; t < part.size(); ++t)
+        if (part[t] == first.size()) first.push_back(t);
+    return first;
+}
+
+/// Turns all round if what they bound is inside out, and returns whether. Then each place is inside once, or outside.
+bool turn_out(const Draft& d, const std::vector<std::size_t>& part) {
+    const std::vector<std::size_t> first = first_of_parts(part);
+    std::vector<double> volume(first.size(), 0);
+    for (std::size_t t = 0; t < part.size(); ++t)
+        volume[part[t]] += volume_below(d.corners(t), d.corner(first[part[t]], 0));
+    const bool turned = std::accumulate(volume.begin(), volume.end(), 0.0) < 0;
+    if (turned) {
+        for (Triangle& triangle : d.triangles) std::swap(triangle[1], triangle[2]);
+        for (double& v : volume) v = -v;
+    }
+    for (std::size_t p = 0; p < first.size(); ++p) {
+        int around = 0;
+        for (std::size_t other = 0; other < first.size(); ++other)
+            if (other != p) around += winding(d, part, other, d.corner(first[p], 0));
+        if (around == (volume[p] > 0 ? 0 : 1)) continue;
+        refuse("has a part that " + std::string(volume[p] > 0 ? "lies within another" : "is inside out") +
+               ": that of " + triangle_words(d, first[p]));
+    }
+    return turned;
+}
+
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+
+}  // namespace
+
+TriangulatedSurface::TriangulatedSurface(std::vector<Vec3> points, std::vector<Triangle> triangles)
+    : tree_(std::move(points), std::move(triangles)), edge_normal_(this->triangles().size()),
+      corner_normal_(this->points().size()) {
+    const Vec3 origin = tree_.corners(0)[0];
+    Vec3 moment;
+    for (std::size_t t = 0; t < this->triangles().size(); ++t) {
+        const Corners corners = tree_.corners(t);
+        const Vec3 normal = twice_area(corners);
+        const double below = volume_below(corners, origin);
+        inside_normal_.push_back(normalised(normal));
+        area_ += norm(normal) / 2;
+        volume_ += below / 6;
+        moment += below / 24 * (corners[0] + corners[1] + corners[2] - 3 * origin);
+        for (std::size_t i = 0; i < 3; ++i) {
+            extent_.take_in(corners[i]);
+            farthest_ = std::max(farthest_, norm(corners[i]));
+            corner_normal_[at(this->triangles()[t][i])] +=
+                angle_between(corners[next(i)] - corners[i], corners[next(next(i))] - corners[i]) * inside_normal_[t];
+        }
+    }
+    centroid_ = origin + moment / volume_;
+}
+
+double TriangulatedSurface::signed_distance(const Vec3& x) const {
+    const NearestPlace nearest = tree_.nearest(x);
+    const auto outwards = [&]() -> const Vec3& {
+        const auto part = static_cast<std::size_t>(nearest.part);
+        if (part == 0) return inside_normal_[nearest.triangle];
+        if (part <= 3) return edge_normal_[nearest.triangle][part - 1];
+        return corner_normal_[at(triangles()[nearest.triangle][part - 4])];
+    };
+    const double far = std::sqrt(nearest.squared_distance);
+    return dot(x - nearest.point, outwards()) < 0 ? -far : far;
+}
+
+TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<Triangle> triangles) {
+    const Draft draft{points, triangles};
+    check_values(draft);
+    const Neighbours beyond = neighbours(draft);
+    check_rings(draft, beyond);
+    check_crossings(draft);
+    const std::vector<std::size_t> part = parts_of(beyond), first = first_of_parts(part);
+    const bool turned = turn_out(draft, part);
+    TriangulatedSurface surface(std::move(points), std::move(triangles));
+    for (std::size_t t : first) surface.point_of_parts_.push_back(surface.tree_.corners(t)[0]);
+    for (std::size_t t = 0; t < beyond.size(); ++t)
+        for (std::size_t i = 0; i < 3; ++i)  // turned round, edge 0 is edge 2
+            surface.edge_normal_[t][turned ? 2 - i : i] =
+                surface.inside_normal_[t] + surface.inside_normal_[beyond[t][i].triangle];
+    return surface;
+}
+
+}  // namespace kropla

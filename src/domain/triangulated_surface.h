@@ -1,0 +1,51 @@
+#pragma once
+
+#include "domain/triangle_tree.h"
+
+namespace kropla {
+
+/// A closed surface of triangles, in one part or several, which bounds a volume: made by `make_surface`.
+class TriangulatedSurface {
+public:
+    [[nodiscard]] const TriangleTree& tree() const { return tree_; }
+    [[nodiscard]] std::span<const Vec3> points() const { return tree_.points(); }
+    [[nodiscard]] std::span<const std::array<int, 3>> triangles() const { return tree_.triangles(); }
+
+    /// The distance from `x` to the surface [m], negative inside: exact to rounding, and so is its sign where the
+    /// distance is above that. In time that grows with the logarithm of the number of triangles.
+    [[nodiscard]] double signed_distance(const Vec3& x) const;
+    [[nodiscard]] Vec3 closest_point(const Vec3& x) const { return tree_.nearest(x).point; }
+
+    [[nodiscard]] double volume() const { return volume_; }      ///< [m^3]
+    [[nodiscard]] double area() const { return area_; }          ///< [m^2]
+    [[nodiscard]] const Vec3& centroid() const { return centroid_; }  ///< of the volume
+    [[nodiscard]] const Extent& extent() const { return extent_; }    ///< the box that just holds it
+    [[nodiscard]] double farthest() const { return farthest_; }       ///< of its points from the origin [m]
+    /// One point of each connected part.
+    [[nodiscard]] std::span<const Vec3> point_of_parts() const { return point_of_parts_; }
+
+private:
+    friend TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+    TriangulatedSurface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+
+    TriangleTree tree_;
+    std::vector<Vec3> inside_normal_;                // per triangle, of unit length
+    std::vector<std::array<Vec3, 3>> edge_normal_;   // per triangle, of the edge from corner i to the next
+    std::vector<Vec3> corner_normal_;                // per point
+    std::vector<Vec3> point_of_parts_;
+    double volume_ = 0, area_ = 0, farthest_ = 0;
+    Vec3 centroid_;
+    Extent extent_;
+};
+
+/// The surface of these triangles, by the numbers of their corners among `points` [m], counter-clockwise seen from
+/// outside; all of them are turned round if what they bound is inside out. Points that are in one place are one point:
+/// files of triangles without numbers (STL) are to be joined first. Parts may be beside each other, or a hollow within
+/// a part, turned to the other side.
+/// Throws DomainError, naming triangle, edge or point and its place, if there is nothing, a number is not finite or has
+/// no point, a triangle has no area, an edge has not just two triangles (open; or not manifold), these are turned
+/// against each other, triangles touch in a point only, or cut each other, or a part lies within another and is turned
+/// as that one.
+[[nodiscard]] TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+
+}  // namespace kropla
