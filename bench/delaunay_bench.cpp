@@ -2,7 +2,7 @@
 // body; beside CGAL's where that is installed. Items are tets. Each measures from the points to the finished
 // triangulation; bytes_per_tet is the most that the heap holds on the way, the given points left out.
 
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 
 #include "base/random.h"
 #include "heap.h"

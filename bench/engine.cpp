@@ -8,7 +8,7 @@
 // from the same mesh. Seconds on the wall, as those are what a second thread saves; the meshes must have the same bits.
 
 #include "adapt/stepping.h"
-#include "step/initial_mesh.h"
+#include <kropla/step/initial_mesh.h>
 
 #include <oneapi/tbb/global_control.h>
 

@@ -2,9 +2,9 @@
 // which is the layer's own. The layer of cases/droplet_layer.toml shall add at most a tenth to a step.
 
 #include "generate/layers.h"
-#include "mesh/quality.h"
-#include "step/advance.h"
-#include "step/initial_mesh.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/step/advance.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <benchmark/benchmark.h>
 

@@ -10,9 +10,9 @@
 // what does it cost?
 
 #include "adapt/stepping.h"
-#include "step/initial_mesh.h"
+#include <kropla/step/initial_mesh.h>
 #include "adapt/zone.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <oneapi/tbb/global_control.h>
 

@@ -11,9 +11,9 @@
 // a minute of processor time.
 
 #include "adapt/stepping.h"
-#include "step/initial_mesh.h"
-#include "base/error.h"
-#include "mesh/quality.h"
+#include <kropla/step/initial_mesh.h>
+#include <kropla/base/error.h>
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,10 +4,10 @@
 // them, and tells how far the parts are from making up the cells.
 
 #include "base/random.h"
-#include "generate/generate.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "transfer/transfer.h"
+#include <kropla/generate/generate.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include "transfer/geometry.h"
 
 #include <algorithm>
 #include <array>
@@ -76,9 +76,9 @@ void report_intersections(const char* name, const Mesh& a, const Mesh& b) {
     for (const auto& [from, to] : {std::pair{&a, &b}, {&b, &a}}) {
         const TransferPlan plan = plan_transfer(*from, *to);
         std::size_t pairs = 0;
-        for (const Overlaps::Chunk& chunk : plan.overlaps.chunks) pairs += chunk.cell.size();
-        std::printf("| %s | %zu | %zu | %.1e | %zu |\n", name, plan.changed.come.size(), pairs,
-                    plan.overlaps.worst_gap, plan.overlaps.searched);
+        for (const Overlaps::Chunk& chunk : plan.geometry->overlaps.chunks) pairs += chunk.cell.size();
+        std::printf("| %s | %zu | %zu | %.1e | %zu |\n", name, plan.geometry->changed.come.size(), pairs,
+                    plan.geometry->overlaps.worst_gap, plan.geometry->overlaps.searched);
     }
 }
 

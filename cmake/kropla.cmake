@@ -17,12 +17,29 @@ function(kropla_settings target)
     endif()
 endfunction()
 
-# kropla_library(NAME FILES ...): one static library of the product.
+# Headers for users are included as <kropla/FOLDER/FILE.h>, inside too: here are their folders.
+set(KROPLA_INCLUDE ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${KROPLA_INCLUDE}/kropla)
+configure_file(${PROJECT_SOURCE_DIR}/src/version.h.in ${KROPLA_INCLUDE}/kropla/version.h @ONLY)
+foreach(folder base mesh domain generate adapt transfer step simulate io)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/${folder} ${KROPLA_INCLUDE}/kropla/${folder} SYMBOLIC)
+endforeach()
+
+# kropla_library(NAME FILES ...): one library of the product, static unless BUILD_SHARED_LIBS says otherwise. Headers that
+# are not for users are seen by our own targets alone (kropla_inside).
 function(kropla_library name)
-    add_library(${name} STATIC ${ARGN})
-    target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
-                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/kropla>)
+    add_library(${name} ${ARGN})
+    target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${KROPLA_INCLUDE}>
+                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    set_target_properties(${name} PROPERTIES VERSION ${PROJECT_VERSION}
+                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    kropla_inside(${name})
     kropla_settings(${name})
+endfunction()
+
+# A target that is written with the library, not for it.
+function(kropla_inside target)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
 endfunction()
 
 # kropla_test(FOLDER LIBRARIES ... FILES ...): the tests of one folder, as one program, one ctest entry per TEST.
@@ -31,6 +48,7 @@ function(kropla_test folder)
     add_executable(test_${folder} ${ARG_FILES})
     target_link_libraries(test_${folder} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main)
     target_include_directories(test_${folder} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    kropla_inside(test_${folder})
     kropla_settings(test_${folder})
     gtest_discover_tests(test_${folder} TEST_PREFIX ${folder}. DISCOVERY_TIMEOUT 60)
 endfunction()

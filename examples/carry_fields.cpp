@@ -1,8 +1,8 @@
 // Two bodies that pass each other, and what a code of one's own has on the mesh, carried from step to step: a scalar and a
 // vector per vertex, a number per cell, a struct of one's own. Prints what is conserved; writes the last mesh as VTK.
-#include "mesh/quality.h"
-#include "step/advance.h"
-#include "step/initial_mesh.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/step/advance.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <algorithm>
 #include <cmath>

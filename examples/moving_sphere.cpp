@@ -1,8 +1,8 @@
 // A sphere that crosses a box, its mesh following step by step, with the mesh library alone: prints for each
 // step how many cells there are, how bad the worst is (R/r: 3 is perfect) and how many the step touched.
-#include "mesh/quality.h"
-#include "step/advance.h"
-#include "step/initial_mesh.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/step/advance.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <algorithm>
 #include <cstdio>

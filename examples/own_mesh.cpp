@@ -1,8 +1,8 @@
 // A mesh from elsewhere, a cube in a cylinder, with the cube moved along the axis and turned a little: prints for each
 // step how many cells there are, how bad the worst is (R/r: 3 is perfect) and how many the step touched.
-#include "domain/of_mesh.h"
-#include "mesh/quality.h"
-#include "step/advance.h"
+#include <kropla/domain/of_mesh.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/step/advance.h>
 
 #include <algorithm>
 #include <cmath>

@@ -22,7 +22,8 @@ SEES = {
     "report": ["io"],
     "app": ["base", "mesh", "domain", "generate", "adapt", "transfer", "step", "simulate", "welding", "io", "report"],
 }
-INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
+INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"|<kropla/)([^">]+)[">]')
+HEADERS = re.compile(r"list\(APPEND KROPLA_\w+_HEADERS([^)]*)\)")
 
 
 def seen_from(folder):
@@ -55,10 +56,40 @@ def wrong_includes(source):
     return wrong
 
 
+def headers_for_users(source):
+    """FOLDER/FILE.h of each header that is installed."""
+    lists = [*source.glob("*/files.cmake"), *source.glob("*/CMakeLists.txt")]
+    return {header for path in lists for found in HEADERS.findall(path.read_text()) for header in found.split()}
+
+
+def wrong_spelling(source):
+    """One line per include of a header for users that is not spelt <kropla/...>, of another that is, or of another by one
+    that is for users."""
+    known = headers_for_users(source)
+    wrong = []
+    for path in sorted(source.rglob("*")):
+        if path.suffix not in (".h", ".cpp") or path.parent == source:
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            include = INCLUDE.match(line)
+            if include is None:
+                continue
+            place = f"{path.relative_to(source)}:{number}: "
+            if ("<kropla/" in line) != (include[1] in known):
+                wrong.append(f"{place}{line.strip()}")
+            if str(path.relative_to(source)) in known and include[1] not in known:
+                wrong.append(f"{place}is for users, {include[1]} is not")
+    return wrong
+
+
 class Arrows(unittest.TestCase):
     def test_the_source_keeps_to_them(self):
         self.assertGreater(len(list(SOURCE.rglob("*.cpp"))), 10, f"no source in {SOURCE}")
         self.assertEqual(wrong_includes(SOURCE), [])
+
+    def test_what_is_for_users_shows_them_nothing_else(self):
+        self.assertGreater(len(headers_for_users(SOURCE)), 20)
+        self.assertEqual(wrong_spelling(SOURCE), [])
 
     def test_no_arrow_leads_back(self):
         for folder in SEES:

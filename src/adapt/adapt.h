@@ -1,10 +1,10 @@
 #pragma once
 
-#include "base/watch.h"
-#include "domain/domain.h"
-#include "mesh/cavity.h"
-#include "mesh/mesh.h"
-#include "mesh/topology.h"
+#include <kropla/base/watch.h>
+#include <kropla/domain/domain.h>
+#include <kropla/mesh/cavity.h>
+#include <kropla/mesh/mesh.h>
+#include <kropla/mesh/topology.h>
 
 #include <cstdint>
 #include <limits>

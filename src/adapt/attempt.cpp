@@ -1,4 +1,4 @@
-#include "adapt/attempt.h"
+#include <kropla/adapt/attempt.h>
 
 #include "adapt/mesh_step.h"
 

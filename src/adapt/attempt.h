@@ -1,6 +1,6 @@
 #pragma once
 
-#include "adapt/moving_mesh.h"
+#include <kropla/adapt/moving_mesh.h>
 
 namespace kropla {
 

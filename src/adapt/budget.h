@@ -1,6 +1,6 @@
 #pragma once
 
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 
 namespace kropla {
 

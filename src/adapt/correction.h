@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domain/domain.h"
+#include <kropla/domain/domain.h>
 
 namespace kropla {
 

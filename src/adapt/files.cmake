@@ -17,3 +17,5 @@ list(APPEND KROPLA_MESH_FILES
     adapt/moving_mesh.cpp
     adapt/attempt.cpp
 )
+# For users: <kropla/adapt/...>.
+list(APPEND KROPLA_MESH_HEADERS adapt/adapt.h adapt/refusal.h adapt/moving_mesh.h adapt/attempt.h)

@@ -1,12 +1,12 @@
 #include "adapt/fits_domain.h"
 
-#include "base/error.h"
-#include "domain/words.h"
-#include "mesh/cells.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/base/error.h>
+#include <kropla/domain/words.h>
+#include <kropla/mesh/cells.h>
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 
 #include <cmath>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domain/domain.h"
-#include "mesh/mesh.h"
+#include <kropla/domain/domain.h>
+#include <kropla/mesh/mesh.h>
 
 namespace kropla {
 

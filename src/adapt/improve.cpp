@@ -8,7 +8,7 @@
 #include "adapt/budget.h"
 #include "adapt/propose.h"
 #include "adapt/star.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <iterator>

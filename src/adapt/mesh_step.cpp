@@ -3,8 +3,8 @@
 #include "adapt/way.h"
 #include "base/checks.h"
 #include "generate/layers.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <algorithm>
 #include <cmath>

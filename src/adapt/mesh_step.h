@@ -1,6 +1,6 @@
 #pragma once
 
-#include "adapt/attempt.h"
+#include <kropla/adapt/attempt.h>
 #include "adapt/correction.h"
 #include "adapt/zone.h"
 

@@ -1,4 +1,4 @@
-#include "adapt/moving_mesh.h"
+#include <kropla/adapt/moving_mesh.h>
 
 #include "adapt/mesh_step.h"
 #include "adapt/fits_domain.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "adapt/adapt.h"
-#include "adapt/refusal.h"
+#include <kropla/adapt/adapt.h>
+#include <kropla/adapt/refusal.h>
 
 #include <memory>
 #include <optional>

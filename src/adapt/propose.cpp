@@ -1,6 +1,6 @@
 #include "adapt/propose.h"
 
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <cmath>
 #include <map>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 #include "adapt/for_all.h"
 #include "mesh/index_set.h"
 

@@ -5,8 +5,8 @@
 #include "adapt/propose.h"
 #include "adapt/zone.h"
 #include "base/tetrahedron.h"
-#include "mesh/cells.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/cells.h>
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <cmath>

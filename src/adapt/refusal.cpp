@@ -1,4 +1,4 @@
-#include "adapt/refusal.h"
+#include <kropla/adapt/refusal.h>
 
 #include "domain/approach.h"
 

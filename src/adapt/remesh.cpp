@@ -5,10 +5,10 @@
 
 #include "adapt/budget.h"
 #include "base/random.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "generate/sampling.h"
 #include "mesh/index_set.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Smoothing: the paper's weighted Laplacian (section 1.1, Fig. 4) here in 3D over the vertices joined to P0
 // by an edge; guarded by the worst aspect ratio of the ball; and optimisation of the worst (star.cpp).
 
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 #include "adapt/star.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <limits>

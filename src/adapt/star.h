@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/mesh.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/mesh.h>
+#include <kropla/mesh/topology.h>
 
 #include <array>
 #include <span>

@@ -4,9 +4,9 @@
 // largest aspect ratio R/r, or a sum over the volume, for which the same recursion holds; and the ring may be
 // open: an edge on a face of the box, whose two ends of the ring then close it within the face.
 
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 #include "base/tetrahedron.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <bit>

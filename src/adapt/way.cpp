@@ -5,7 +5,7 @@
 #include "adapt/way.h"
 
 #include "adapt/for_all.h"
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include <algorithm>
 #include <array>

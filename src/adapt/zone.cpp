@@ -2,7 +2,7 @@
 
 #include "adapt/for_all.h"
 #include "base/tetrahedron.h"
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 

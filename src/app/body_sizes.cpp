@@ -1,7 +1,7 @@
 #include "app/body_sizes.h"
 
 #include "io/file.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 #include "simulate/cells.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "app/case_body.h"
 #include "app/case_heat.h"
 #include "app/case_table.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domain/domain.h"
-#include "simulate/heat.h"
+#include <kropla/domain/domain.h>
+#include <kropla/simulate/heat.h>
 
 #include <array>
 #include <cstdint>

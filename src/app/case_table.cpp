@@ -1,7 +1,7 @@
 // Reading the tables of a case file, and the one-line refusals of what is wrong in them.
 #include "app/case_table.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <fmt/format.h>
 

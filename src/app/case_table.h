@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/expression.h"
-#include "base/vec3.h"
+#include <kropla/base/vec3.h>
 
 #include <toml++/toml.h>
 

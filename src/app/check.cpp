@@ -3,11 +3,11 @@
 #include "app/distribution.h"
 #include "app/fault.h"
 #include "app/shell_jump.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "base/tetrahedron.h"
-#include "io/vtk.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 #include "app/check_files.h"
 
 #include "app/fault.h"
-#include "base/error.h"
-#include "io/pvd.h"
-#include "io/vtk.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
+#include <kropla/base/error.h>
+#include <kropla/io/pvd.h>
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/command_line.h"
 
 #include "app/case_table.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <fmt/format.h>
 

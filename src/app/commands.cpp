@@ -11,11 +11,11 @@
 #include "app/progress.h"
 #include "app/run.h"
 #include "app/step.h"
-#include "base/error.h"
-#include "io/vtk.h"
-#include "mesh/quality.h"
+#include <kropla/base/error.h>
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/quality.h>
 #include "report/page.h"
-#include "step/initial_mesh.h"
+#include <kropla/step/initial_mesh.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 
 #include "app/case_table.h"
 #include "io/file.h"
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 #include "report/page.h"
 #include "report/run_files.h"
 

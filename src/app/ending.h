@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/mesh.h"
-#include "step/stuck.h"
+#include <kropla/mesh/mesh.h>
+#include <kropla/step/stuck.h>
 
 #include <exception>
 #include <filesystem>

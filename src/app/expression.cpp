@@ -2,7 +2,7 @@
 // into our own words: what is wrong, and at which character.
 #include "app/expression.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <fmt/format.h>
 #include <muParser.h>

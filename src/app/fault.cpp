@@ -1,11 +1,11 @@
 #include "app/fault.h"
 
 #include "app/hanging.h"
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "mesh/crossing.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // What can be known of a run before it starts.
 #include "app/foresight.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/approach.h"
 #include "domain/layer_room.h"
 #include "domain/paths.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/case.h"
-#include "base/watch.h"
+#include <kropla/base/watch.h>
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,6 @@
 #include "app/new_case.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
 
 #include <fmt/format.h>

@@ -14,10 +14,10 @@
 #include "app/same_case.h"
 #include "app/solver_options.h"
 #include "app/step.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "report/page.h"
 #include "simulate/stop.h"
-#include "step/initial_mesh.h"
+#include <kropla/step/initial_mesh.h>
 
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>

@@ -1,6 +1,6 @@
 #include "app/run_folder.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "report/run_files.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/run_lines.h"
 
 #include "app/progress.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>

@@ -1,6 +1,6 @@
 #include "app/run_lock.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <fmt/format.h>
 

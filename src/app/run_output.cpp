@@ -4,9 +4,9 @@
 #include "app/ending.h"
 #include "app/run_folder.h"
 #include "app/step_row.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 
 #include <fmt/format.h>
 

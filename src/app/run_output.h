@@ -4,9 +4,9 @@
 #include "app/run.h"
 #include "app/step_row.h"
 
-#include "io/checkpoint.h"
-#include "io/pvd.h"
-#include "mesh/quality.h"
+#include <kropla/io/checkpoint.h>
+#include <kropla/io/pvd.h>
+#include <kropla/mesh/quality.h>
 
 #include <optional>
 #include <vector>

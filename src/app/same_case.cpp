@@ -1,6 +1,6 @@
 #include "app/same_case.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

@@ -1,8 +1,8 @@
 // The change of cell size at the shells of prism layers.
 #include "app/shell_jump.h"
 
-#include "mesh/cells.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/cells.h>
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <array>

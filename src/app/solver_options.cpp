@@ -1,7 +1,7 @@
 #include "app/solver_options.h"
 
 #include "app/case_table.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "simulate/solver.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "app/step.h"
 
-#include "simulate/heat.h"
+#include <kropla/simulate/heat.h>
 
 #include <fmt/format.h>
 

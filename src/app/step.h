@@ -1,9 +1,9 @@
 #pragma once
 
 #include "app/case.h"
-#include "simulate/fields.h"
+#include <kropla/simulate/fields.h>
 #include "simulate/partition.h"
-#include "step/advance.h"
+#include <kropla/step/advance.h>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "app/step_row.h"
 
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include <fmt/format.h>
 

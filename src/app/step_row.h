@@ -2,7 +2,7 @@
 
 #include "app/step.h"
 #include "app/steps_csv.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #include "app/steps_csv.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/vec3.h"
+#include <kropla/base/vec3.h>
 
 /// Before a function: it is compiled for processors of several generations, and at run time the one is taken
 /// that suits. None of them fuses or reorders arithmetic, so that the bits are the same.

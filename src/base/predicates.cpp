@@ -5,7 +5,7 @@
 // exact), because points in general position are decided by the first two and regular grids need the last at
 // once.
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 
 #include "base/expansion.h"
 #include "base/predicates_filter.h"

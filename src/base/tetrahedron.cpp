@@ -3,7 +3,7 @@
 
 #include "base/tetrahedron.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "base/predicates_filter.h"
 
 #include <cmath>

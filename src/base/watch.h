@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <atomic>
 #include <functional>

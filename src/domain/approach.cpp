@@ -5,7 +5,7 @@
 
 #include "domain/approach.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/triangle_tree.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domain/words.h"
+#include <kropla/domain/words.h>
 
 #include <optional>
 #include <span>

@@ -1,6 +1,6 @@
 // Bodies in place, distances and the size field.
 
-#include "domain/domain.h"
+#include <kropla/domain/domain.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "base/watch.h"
-#include "domain/shape.h"
-#include "mesh/mesh.h"
+#include <kropla/base/watch.h>
+#include <kropla/domain/shape.h>
+#include <kropla/mesh/mesh.h>
 
 #include <cstddef>
 #include <functional>

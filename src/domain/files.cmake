@@ -13,3 +13,5 @@ list(APPEND KROPLA_MESH_FILES
     domain/placement.cpp
     domain/words.cpp
 )
+# For users: <kropla/domain/...>.
+list(APPEND KROPLA_MESH_HEADERS domain/domain.h domain/shape.h domain/words.h domain/of_mesh.h)

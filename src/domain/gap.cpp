@@ -5,7 +5,7 @@
 // way found bound the distance from below, so that it is known when that is near enough. Among many triangles the nearest are found by trees of boxes,
 // two at once where both are triangles [Gottschalk, Lin, Manocha 1996, "OBBTree", for the descent].
 
-#include "domain/shape.h"
+#include <kropla/domain/shape.h>
 #include "domain/triangulated_surface.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Do the layers fit where the bodies stand at the start?
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/approach.h"
 #include "domain/layer_room.h"
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "domain/of_mesh.h"
+#include <kropla/domain/of_mesh.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/triangle_tree.h"
-#include "domain/words.h"
-#include "mesh/prisms.h"
-#include "mesh/topology.h"
+#include <kropla/domain/words.h>
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/topology.h>
 
 #include <memory>
 #include <string>

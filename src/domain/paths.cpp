@@ -8,7 +8,7 @@
 
 #include "domain/paths.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "base/random.h"
 #include "domain/approach.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/watch.h"
-#include "domain/words.h"
+#include <kropla/base/watch.h>
+#include <kropla/domain/words.h>
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 // May the bodies stand where they stand?
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/approach.h"
-#include "domain/domain.h"
+#include <kropla/domain/domain.h>
 
 #include <algorithm>
 #include <cassert>

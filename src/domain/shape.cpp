@@ -5,7 +5,7 @@
 // variable is the distance from the function's last pole, so that nothing cancels near it, and Newton starts
 // at a point that is surely left of the root and near it, so that no bisection is needed.
 
-#include "domain/shape.h"
+#include <kropla/domain/shape.h>
 
 #include "domain/triangulated_surface.h"
 

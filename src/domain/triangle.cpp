@@ -3,7 +3,7 @@
 
 #include "domain/triangle.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/vec3.h"
+#include <kropla/base/vec3.h>
 
 #include <array>
 

@@ -7,8 +7,8 @@
 
 #include "domain/triangulated_surface.h"
 
-#include "base/error.h"
-#include "domain/words.h"
+#include <kropla/base/error.h>
+#include <kropla/domain/words.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "domain/words.h"
+#include <kropla/domain/words.h>
 
 #include <array>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "generate/box.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 
 #include "generate/box.h"
 #include "generate/triangle.h"
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 

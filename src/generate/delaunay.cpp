@@ -3,7 +3,7 @@
 
 #include "generate/delaunay.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "generate/delaunay_kernel.h"
 #include "generate/hilbert.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 
 #include <span>
 

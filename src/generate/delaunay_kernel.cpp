@@ -11,7 +11,7 @@
 
 #include "generate/delaunay_kernel.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "base/predicates_filter.h"
 
 #include <algorithm>

@@ -14,3 +14,5 @@ list(APPEND KROPLA_MESH_FILES
     generate/skin.cpp
     generate/surface.cpp
 )
+# For users: <kropla/generate/...>.
+list(APPEND KROPLA_MESH_HEADERS generate/generate.h)

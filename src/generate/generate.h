@@ -1,8 +1,8 @@
 #pragma once
 
-#include "base/watch.h"
-#include "domain/domain.h"
-#include "mesh/mesh.h"
+#include <kropla/base/watch.h>
+#include <kropla/domain/domain.h>
+#include <kropla/mesh/mesh.h>
 
 #include <cstdint>
 #include <span>

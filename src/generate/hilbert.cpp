@@ -5,7 +5,7 @@
 
 #include "generate/hilbert.h"
 
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 
 #include "base/random.h"
 

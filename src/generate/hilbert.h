@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/vec3.h"
-#include "mesh/mesh.h"
+#include <kropla/base/vec3.h>
+#include <kropla/mesh/mesh.h>
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domain/domain.h"
-#include "generate/generate.h"
-#include "mesh/prisms.h"
+#include <kropla/domain/domain.h>
+#include <kropla/generate/generate.h>
+#include <kropla/mesh/prisms.h>
 
 #include <optional>
 #include <span>

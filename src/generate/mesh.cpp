@@ -9,16 +9,16 @@
 // refinement"], with the new point on the body's surface; the surface is scaled to the body's volume again,
 // and the columns are set up anew.
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/layer_room.h"
-#include "domain/words.h"
+#include <kropla/domain/words.h>
 #include "generate/box.h"
 #include "generate/conform.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "generate/layers.h"
 #include "generate/relax.h"
 #include "generate/skin.h"
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 #include <optional>

@@ -6,7 +6,7 @@
 
 #include "generate/box.h"
 #include "generate/clearance.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "generate/layers.h"
 #include "generate/sampling.h"
 

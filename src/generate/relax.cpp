@@ -11,7 +11,7 @@
 #include "generate/box.h"
 #include "generate/clearance.h"
 #include "generate/triangle.h"
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <bit>
 

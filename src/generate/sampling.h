@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/random.h"
-#include "base/watch.h"
-#include "domain/domain.h"
+#include <kropla/base/watch.h>
+#include <kropla/domain/domain.h>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/index.h"
-#include "generate/generate.h"
+#include <kropla/base/index.h>
+#include <kropla/generate/generate.h>
 
 #include <array>
 

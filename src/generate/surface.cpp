@@ -6,10 +6,10 @@
 // and a similar one keeps the shapes of all triangles.
 
 #include "base/random.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "generate/sampling.h"
 #include "generate/skin.h"
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 #include <cassert>

@@ -15,9 +15,9 @@
 //     /fields/0, 1, ...   attributes name, unit; dataset values (n)
 //     /values             an attribute each
 
-#include "io/checkpoint.h"
+#include <kropla/io/checkpoint.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
 
 #include <algorithm>

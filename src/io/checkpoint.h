@@ -1,6 +1,6 @@
 #pragma once
 
-#include "simulate/fields.h"
+#include <kropla/simulate/fields.h>
 
 #include <cstdint>
 #include <filesystem>

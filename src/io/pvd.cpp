@@ -1,8 +1,8 @@
 // ParaView's collections: an XML file of a few lines, of which we write all and read the elements DataSet.
 
-#include "io/pvd.h"
+#include <kropla/io/pvd.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
 #include "io/xml.h"
 

@@ -1,11 +1,11 @@
 // Layers from loose prisms. The first prism of each stack stands on the wall; the next is the one whose lower
 // triangle is the upper one of the last. Stacks whose walls hang together, on one side, are a layer.
 
-#include "io/stacks.h"
+#include <kropla/io/stacks.h>
 
-#include "base/error.h"
-#include "mesh/prisms.h"
-#include "mesh/topology.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <map>

@@ -4,15 +4,15 @@
 // The reader trusts what it reads: sizes are looked at before (io/vtu_text.h), whatever it hands over is
 // looked at before use, and what it says of its troubles is caught and becomes a FileError.
 
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "base/tetrahedron.h"
 #include "io/file.h"
 #include "io/vtu_text.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "base/watch.h"
-#include "io/stacks.h"
-#include "simulate/fields.h"
+#include <kropla/base/watch.h>
+#include <kropla/io/stacks.h>
+#include <kropla/simulate/fields.h>
 
 #include <filesystem>
 #include <span>

@@ -13,7 +13,7 @@
 
 #include "io/vtu_text.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/xml.h"
 
 #include <algorithm>

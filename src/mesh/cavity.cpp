@@ -1,6 +1,6 @@
-#include "mesh/cavity.h"
+#include <kropla/mesh/cavity.h>
 
-#include "mesh/topology.h"
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <stdexcept>

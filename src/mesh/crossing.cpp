@@ -6,9 +6,9 @@
 
 #include "mesh/crossing.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "mesh/box_tree.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <numeric>

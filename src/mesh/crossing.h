@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/topology.h"
+#include <kropla/mesh/topology.h>
 
 #include <optional>
 

@@ -8,3 +8,5 @@ list(APPEND KROPLA_MESH_FILES
     mesh/verify.cpp
     mesh/verify_layers.cpp
 )
+# For users: <kropla/mesh/...>.
+list(APPEND KROPLA_MESH_HEADERS mesh/mesh.h mesh/cells.h mesh/topology.h mesh/cavity.h mesh/quality.h mesh/verify.h mesh/prisms.h)

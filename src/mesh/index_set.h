@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/index.h"
+#include <kropla/base/index.h>
 
 #include <array>
 #include <bit>

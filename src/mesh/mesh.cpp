@@ -1,7 +1,7 @@
-#include "mesh/mesh.h"
+#include <kropla/mesh/mesh.h>
 
-#include "base/error.h"
-#include "mesh/cells.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 #include <numeric>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/index.h"
-#include "base/vec3.h"
+#include <kropla/base/index.h>
+#include <kropla/base/vec3.h>
 
 #include <array>
 #include <span>

@@ -1,6 +1,6 @@
 // Prisms of the layers: numbering, volume, quality.
 
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include <algorithm>
 #include <cmath>

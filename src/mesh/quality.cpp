@@ -1,7 +1,7 @@
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include "base/tetrahedron.h"
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include <algorithm>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "mesh/topology.h"
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <cassert>

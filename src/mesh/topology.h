@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/cells.h"
-#include "mesh/mesh.h"
+#include <kropla/mesh/cells.h>
+#include <kropla/mesh/mesh.h>
 
 #include <optional>
 #include <vector>

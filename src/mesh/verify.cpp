@@ -1,8 +1,8 @@
-#include "mesh/verify.h"
+#include <kropla/mesh/verify.h>
 
-#include "base/predicates.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
+#include <kropla/base/predicates.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 #include "mesh/verify_layers.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "mesh/verify_layers.h"
 
-#include "mesh/prisms.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <array>

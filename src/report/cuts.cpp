@@ -1,7 +1,7 @@
 #include "report/cuts.h"
 
-#include "io/vtk.h"
-#include "mesh/prisms.h"
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/prisms.h>
 #include "io/xml.h"
 #include "report/picture.h"
 #include "report/svg.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/watch.h"
+#include <kropla/base/watch.h>
 #include "report/run_files.h"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "report/ending.h"
 
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 #include "report/picture.h"
 #include "report/svg.h"
 

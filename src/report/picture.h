@@ -1,7 +1,7 @@
 #pragma once
 
 #include "report/section.h"
-#include "simulate/fields.h"
+#include <kropla/simulate/fields.h>
 
 #include <optional>
 #include <span>

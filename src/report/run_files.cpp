@@ -1,6 +1,6 @@
 #include "report/run_files.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
 
 #include <algorithm>

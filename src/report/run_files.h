@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/vec3.h"
-#include "io/pvd.h"
+#include <kropla/base/vec3.h>
+#include <kropla/io/pvd.h>
 #include "report/table.h"
 
 #include <filesystem>

@@ -7,7 +7,7 @@
 
 #include "report/section.h"
 
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #include "report/table.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Tets and prisms of a region, and where it ends.
 #include "simulate/cells.h"
 
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 

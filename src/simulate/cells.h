@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/mesh.h"
+#include <kropla/mesh/mesh.h>
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/mesh.h"
-#include "simulate/petsc.h"
+#include <kropla/mesh/mesh.h>
+#include <kropla/simulate/petsc.h>
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // The heat equation's options, initial state and energy; its step is in heat_step.cpp.
-#include "simulate/heat.h"
+#include <kropla/simulate/heat.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "simulate/elements.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "mesh/mesh.h"
-#include "simulate/fields.h"
-#include "simulate/petsc.h"
+#include <kropla/mesh/mesh.h>
+#include <kropla/simulate/fields.h>
+#include <kropla/simulate/petsc.h>
 
 #include <array>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "simulate/elements.h"
-#include "simulate/heat.h"
+#include <kropla/simulate/heat.h>
 
 namespace kropla {
 

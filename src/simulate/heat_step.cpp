@@ -1,8 +1,8 @@
 // One step of the heat equation: assembly and solution of the system derived in heat.h, from what the cells
 // add to it (heat_cell.h), the fluxes and the values at the boundary.
 
-#include "base/error.h"
-#include "mesh/cells.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/cells.h>
 #include "simulate/carried.h"
 #include "simulate/flow_potential.h"
 #include "simulate/heat_cell.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "simulate/partition.h"
-#include "simulate/petsc.h"
+#include <kropla/simulate/petsc.h>
 
 #include <array>
 #include <cstddef>

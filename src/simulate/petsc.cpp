@@ -1,6 +1,6 @@
-#include "simulate/petsc.h"
+#include <kropla/simulate/petsc.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <cstdlib>
 #include <new>

@@ -5,7 +5,7 @@
 //     Numer. Math. 6: that error is the smallest relative change of the data that makes x exact.
 #include "simulate/solver.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "simulate/stop.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 //     seen by the end; here of seven points, and a piece against its halves.
 #include "simulate/step_mean.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <algorithm>
 #include <array>

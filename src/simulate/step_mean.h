@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/watch.h"
-#include "simulate/heat.h"
+#include <kropla/base/watch.h>
+#include <kropla/simulate/heat.h>
 
 #include <span>
 #include <string>

@@ -1,9 +1,9 @@
 // One time step: the list of the paper's section 1, in its order.
 
-#include "step/advance.h"
+#include <kropla/step/advance.h>
 
-#include "base/error.h"
-#include "mesh/quality.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <chrono>

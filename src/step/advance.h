@@ -1,8 +1,8 @@
 #pragma once
 
-#include "adapt/attempt.h"
-#include "step/fields.h"
-#include "step/stuck.h"
+#include <kropla/adapt/attempt.h>
+#include <kropla/step/fields.h>
+#include <kropla/step/stuck.h>
 
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "step/fields.h"
+#include <kropla/step/fields.h>
 
 #include <stdexcept>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "transfer/transfer.h"
+#include <kropla/transfer/transfer.h>
 
 #include <array>
 #include <concepts>

@@ -3,3 +3,5 @@ list(APPEND KROPLA_MESH_FILES
     step/fields.cpp
     step/advance.cpp
 )
+# For users: <kropla/step/...>.
+list(APPEND KROPLA_MESH_HEADERS step/fields.h step/advance.h step/initial_mesh.h step/stuck.h)

@@ -1,9 +1,9 @@
-#include "step/initial_mesh.h"
+#include <kropla/step/initial_mesh.h>
 
-#include "adapt/refusal.h"
-#include "generate/generate.h"
-#include "mesh/quality.h"
-#include "step/stuck.h"
+#include <kropla/adapt/refusal.h>
+#include <kropla/generate/generate.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/step/stuck.h>
 
 #include <cstdio>
 

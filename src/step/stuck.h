@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/error.h"
-#include "mesh/mesh.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/mesh.h>
 
 #include <optional>
 #include <string>

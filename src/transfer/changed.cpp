@@ -4,7 +4,7 @@
 
 #include "transfer/changed.h"
 
-#include "mesh/topology.h"
+#include <kropla/mesh/topology.h>
 #include "transfer/slot_map.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "transfer/cluster.h"
 
-#include "mesh/topology.h"
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 

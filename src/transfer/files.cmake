@@ -11,3 +11,5 @@ list(APPEND KROPLA_MESH_FILES
     transfer/project.cpp
     transfer/project_cells.cpp
 )
+# For users: <kropla/transfer/...>.
+list(APPEND KROPLA_MESH_HEADERS transfer/transfer.h)

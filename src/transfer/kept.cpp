@@ -1,7 +1,7 @@
 #include "transfer/kept.h"
 
-#include "base/error.h"
-#include "mesh/quality.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ constexpr double most_lost = 1e-12;  // [-] of the integral of the absolute valu
 
 RegionSums::RegionSums(const TransferPlan& plan) : after_(*plan.after) {
     std::int32_t regions = 0;
-    for (Tet t : plan.changed.come) regions = std::max(regions, plan.after->region[t].value + 1);
-    for (Tet t : plan.changed.gone) regions = std::max(regions, plan.before->region[t].value + 1);
+    for (Tet t : plan.geometry->changed.come) regions = std::max(regions, plan.after->region[t].value + 1);
+    for (Tet t : plan.geometry->changed.gone) regions = std::max(regions, plan.before->region[t].value + 1);
     regions_.resize(static_cast<std::size_t>(regions));
 }
 

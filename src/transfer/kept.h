@@ -1,7 +1,6 @@
 #pragma once
 
-#include "transfer/changed.h"
-#include "transfer/transfer.h"
+#include "transfer/geometry.h"
 
 #include <algorithm>
 #include <span>

@@ -1,6 +1,6 @@
-#include "transfer/transfer.h"
+#include <kropla/transfer/transfer.h>
 
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 #include <unordered_set>

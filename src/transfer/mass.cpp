@@ -7,7 +7,7 @@
 #include "transfer/mass.h"
 
 #include "base/tetrahedron.h"
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <algorithm>
 #include <cmath>

@@ -9,11 +9,11 @@
 #include "transfer/overlap.h"
 
 #include "base/tetrahedron.h"
-#include "mesh/cells.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/cells.h>
+#include <kropla/mesh/topology.h>
 #include "transfer/clip.h"
 #include "transfer/slot_map.h"
-#include "transfer/transfer.h"
+#include <kropla/transfer/transfer.h>
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/watch.h"
+#include <kropla/base/watch.h>
 #include "transfer/changed.h"
 
 #include <array>

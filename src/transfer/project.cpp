@@ -9,7 +9,7 @@
 
 #include "transfer/kept.h"
 #include "transfer/limit.h"
-#include "transfer/transfer.h"
+#include "transfer/geometry.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -32,9 +32,9 @@ public:
     OldField(const TransferPlan& plan, NodalData values) : plan_(plan), values_(values) {}
     double operator[](Vertex v) const { return values_[v]; }
     [[nodiscard]] double held(Vertex v) const {
-        if (plan_.given.empty()) return values_[v];
-        const auto given = std::ranges::lower_bound(plan_.given, v, {}, &GivenVertex::vertex);
-        return given != plan_.given.end() && given->vertex == v ? interpolated(*given) : values_[v];
+        if (plan_.geometry->given.empty()) return values_[v];
+        const auto given = std::ranges::lower_bound(plan_.geometry->given, v, {}, &GivenVertex::vertex);
+        return given != plan_.geometry->given.end() && given->vertex == v ? interpolated(*given) : values_[v];
     }
     [[nodiscard]] double interpolated(const GivenVertex& given) const {
         double sum = 0;
@@ -77,7 +77,7 @@ OldOverCell old_over_cell(const TransferPlan& plan, const MassCell& cell, const 
                           double origin) {
     OldOverCell over;
     if (cell.come >= 0) {
-        for (const NodalShare& share : plan.overlaps.nodal(at(cell.come))) {
+        for (const NodalShare& share : plan.geometry->overlaps.nodal(at(cell.come))) {
             const double value = old[share.from] - origin;
             over.see(value);
             for (std::size_t k = 0; k < 4; ++k) over.integral[k] += share.weight[k] * value;
@@ -190,16 +190,16 @@ public:
           values_(values),
           old_(plan, values),
           options_(options),
-          solutions_(plan.blocks.size()),
-          grown_(plan.blocks.size()) {}
+          solutions_(plan.geometry->blocks.size()),
+          grown_(plan.geometry->blocks.size()) {}
 
     /// Finds the new values; the old ones stay until `write`.
     TransferReport solve() {
         check_data();
         tbb::parallel_for(std::size_t{0}, solutions_.size(), [&](std::size_t c) {
             heed(options_.watch);
-            if (!takes_part(plan_.blocks[c])) return;
-            solutions_[c] = solve_block(plan_, plan_.blocks[c], old_, options_.limit);
+            if (!takes_part(plan_.geometry->blocks[c])) return;
+            solutions_[c] = solve_block(plan_, plan_.geometry->blocks[c], old_, options_.limit);
         });
         if (std::ranges::any_of(solutions_, [](const BlockSolution& s) { return !s.bounded; })) grow();
         RegionSums sums(plan_);
@@ -210,8 +210,8 @@ public:
     }
     void write() {
         std::vector<double> given;
-        for (const GivenVertex& vertex : plan_.given) given.push_back(old_.interpolated(vertex));
-        for (std::size_t i = 0; i < given.size(); ++i) values_[plan_.given[i].vertex] = given[i];
+        for (const GivenVertex& vertex : plan_.geometry->given) given.push_back(old_.interpolated(vertex));
+        for (std::size_t i = 0; i < given.size(); ++i) values_[plan_.geometry->given[i].vertex] = given[i];
         for (std::size_t c = 0; c < solutions_.size(); ++c) {
             if (gone(c)) continue;
             const BlockSolution& s = solutions_[c];
@@ -226,12 +226,12 @@ private:
                plan_.after->region[block.cells.front().tet] == options_.only;
     }
     [[nodiscard]] const MassBlock& block(std::size_t c) const {
-        return grown_[c].cells.empty() ? plan_.blocks[c] : grown_[c];
+        return grown_[c].cells.empty() ? plan_.geometry->blocks[c] : grown_[c];
     }
 
     void grow() {
-        clusters_ = plan_.clusters;
-        const SlotMap come = places_of(plan_.changed.come);
+        clusters_ = plan_.geometry->clusters;
+        const SlotMap come = places_of(plan_.geometry->changed.come);
         for (std::size_t c = 0; c < solutions_.size(); ++c) {
             if (solutions_[c].bounded) continue;
             ++report_.grown;
@@ -240,7 +240,7 @@ private:
                 heed(options_.watch);
                 if (!clusters_.grow(*plan_.after, now)) break;
                 now = clusters_.now(now);
-                grown_[now] = mass_block(*plan_.before, *plan_.after, plan_.changed, come, clusters_, now);
+                grown_[now] = mass_block(*plan_.before, *plan_.after, plan_.geometry->changed, come, clusters_, now);
                 solutions_[now] = solve_block(plan_, grown_[now], old_, true);
             }
         }
@@ -250,12 +250,12 @@ private:
     [[nodiscard]] bool gone(std::size_t c) const { return !gone_.empty() && gone_[c]; }
 
     void check_data() const {
-        check_weights(*plan_.after, plan_.changed, options_.weight);
+        check_weights(*plan_.after, plan_.geometry->changed, options_.weight);
         const auto check = [&](Vertex v) { check_value(values_[v], "vertex", v.value); };
-        for (const MassBlock& block : plan_.blocks)
+        for (const MassBlock& block : plan_.geometry->blocks)
             if (takes_part(block))
                 for (const OldMass& cell : block.gone) std::ranges::for_each(cell.vertices, check);
-        for (const GivenVertex& vertex : plan_.given) std::ranges::for_each(vertex.from, check);
+        for (const GivenVertex& vertex : plan_.geometry->given) std::ranges::for_each(vertex.from, check);
     }
 
     void add(std::size_t c, RegionSums& sums) {

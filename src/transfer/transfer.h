@@ -1,12 +1,11 @@
 #pragma once
 
-#include "base/watch.h"
-#include "mesh/mesh.h"
-#include "transfer/cluster.h"
-#include "transfer/mass.h"
-#include "transfer/overlap.h"
+#include <kropla/base/watch.h>
+#include <kropla/mesh/mesh.h>
 
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,25 +28,14 @@ struct Location {
 
 // --- The plan: geometry, once per change of the mesh -------------------------------------------------------
 
-/// A vertex that is new, or in a new place, but belongs to an interface or a layer: it gets the old field
-/// there.
-struct GivenVertex {
-    Vertex vertex;
-    std::array<Vertex, 4> from;
-    std::array<double, 4> weights;
-};
+struct TransferGeometry;
 
-/// How to carry any field from `before` to `after`, which are to outlive the plan: what changed, the overlaps
-/// of old and new cells, and the systems to be solved.
+/// How to carry any field from `before` to `after`, which are to outlive the plan.
 struct TransferPlan {
     const Mesh* before = nullptr;
     const Mesh* after = nullptr;
-    ChangedCells changed;
-    Overlaps overlaps;
-    Clusters clusters;
-    std::vector<MassBlock> blocks;   // per cluster; empty where another has taken it in
-    std::vector<GivenVertex> given;  // ascending
     std::size_t cells = 0;  // of the new mesh that take part: those that changed, and those around them
+    std::shared_ptr<const TransferGeometry> geometry;
 };
 
 /// Plans the transfer between two meshes in one slot numbering which differ in `cells` and in the balls of

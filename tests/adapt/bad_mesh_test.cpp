@@ -1,13 +1,13 @@
 // Meshes that no run makes, but that a user of the library may hand in: with cells turned over, flat, or at places that
 // are not finite. No operator proposes such a cell, and every loop ends.
 
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 #include "adapt/cases.h"
 #include "base/random.h"
 #include "base/tetrahedron.h"
 #include "mesh/meshes.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

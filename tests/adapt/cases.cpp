@@ -1,11 +1,11 @@
 #include "adapt/cases.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "base/random.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "mesh/meshes.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <cmath>

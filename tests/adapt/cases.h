@@ -1,8 +1,8 @@
 #pragma once
 
-#include "adapt/adapt.h"
-#include "domain/domain.h"
-#include "mesh/mesh.h"
+#include <kropla/adapt/adapt.h>
+#include <kropla/domain/domain.h>
+#include <kropla/mesh/mesh.h>
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 // Steps that are ended from outside, wherever they are.
 #include "adapt/cases.h"
-#include "adapt/attempt.h"
+#include <kropla/adapt/attempt.h>
 
 #include <gtest/gtest.h>
 

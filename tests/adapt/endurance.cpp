@@ -1,10 +1,10 @@
 #include "adapt/endurance.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "base/random.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
-#include "step/initial_mesh.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #include "base/random.h"
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

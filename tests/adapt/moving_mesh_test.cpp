@@ -1,9 +1,9 @@
 #include "adapt/cases.h"
-#include "adapt/attempt.h"
-#include "base/error.h"
+#include <kropla/adapt/attempt.h>
+#include <kropla/base/error.h>
 #include "mesh/properties.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include "adapt/threads.h"
 #include "adapt/zone.h"
 #include "base/random.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

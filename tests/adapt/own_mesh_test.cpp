@@ -1,14 +1,14 @@
 // Meshes from elsewhere, with bodies of any shape.
 #include "adapt/cases.h"
 #include "adapt/stepping.h"
-#include "base/error.h"
-#include "domain/of_mesh.h"
+#include <kropla/base/error.h>
+#include <kropla/domain/of_mesh.h>
 #include "domain/paths.h"
 #include "domain/triangulated_surface.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "mesh/properties.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

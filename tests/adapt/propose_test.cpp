@@ -3,7 +3,7 @@
 #include "adapt/cases.h"
 #include "adapt/threads.h"
 #include "mesh/meshes.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 #include "adapt/cases.h"
 #include "base/random.h"
 #include "mesh/properties.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "adapt/cases.h"
-#include "adapt/attempt.h"
+#include <kropla/adapt/attempt.h>
 #include "domain/approach.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "base/random.h"
 #include "base/tetrahedron.h"
 #include "mesh/meshes.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "step/advance.h"
+#include <kropla/step/advance.h>
 
 namespace kropla {
 

@@ -1,11 +1,11 @@
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 #include "adapt/cases.h"
 #include "base/random.h"
 #include "base/tetrahedron.h"
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

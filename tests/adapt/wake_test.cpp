@@ -2,9 +2,9 @@
 
 #include "adapt/cases.h"
 #include "adapt/stepping.h"
-#include "step/initial_mesh.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/step/initial_mesh.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

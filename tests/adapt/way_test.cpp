@@ -1,13 +1,13 @@
 #include "adapt/way.h"
 
 #include "adapt/cases.h"
-#include "adapt/attempt.h"
+#include <kropla/adapt/attempt.h>
 #include "base/random.h"
 #include "base/tetrahedron.h"
-#include "generate/generate.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/generate/generate.h>
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

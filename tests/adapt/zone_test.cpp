@@ -2,8 +2,8 @@
 
 #include "adapt/cases.h"
 #include "base/random.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

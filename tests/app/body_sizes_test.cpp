@@ -1,6 +1,6 @@
 #include "app/body_sizes.h"
 #include "generate/domains.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "report/table.h"
 #include "temporary_folder.h"
 

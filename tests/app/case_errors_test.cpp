@@ -1,7 +1,7 @@
 // Every refusal of a case file, word for word: one line that names file, key, line and value, and what would
 // be right.
 #include "app/case.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "case_text.h"
 
 #include <gtest/gtest.h>

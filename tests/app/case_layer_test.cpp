@@ -1,6 +1,6 @@
 // Prism layers and rotations in a case file.
 #include "app/case.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/paths.h"
 #include "case_text.h"
 

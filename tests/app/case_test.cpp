@@ -1,6 +1,6 @@
 #include "app/case.h"
 #include "app/foresight.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "case_text.h"
 
 #include <gtest/gtest.h>

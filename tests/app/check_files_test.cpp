@@ -2,10 +2,10 @@
 
 #include "../io/examples.h"
 #include "app/fault.h"
-#include "base/error.h"
-#include "io/pvd.h"
-#include "io/vtk.h"
-#include "mesh/verify.h"
+#include <kropla/base/error.h>
+#include <kropla/io/pvd.h>
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/verify.h>
 #include "program.h"
 
 #include <algorithm>

@@ -4,12 +4,12 @@
 #include "../io/layered.h"
 #include "app/distribution.h"
 #include "app/hanging.h"
-#include "step/initial_mesh.h"
+#include <kropla/step/initial_mesh.h>
 #include "app/shell_jump.h"
-#include "base/error.h"
-#include "io/vtk.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/base/error.h>
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "app/commands.h"
 #include "app/new_case.h"
 #include "case_text.h"
-#include "io/vtk.h"
-#include "mesh/quality.h"
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/quality.h>
 #include "program.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #include "app/expression.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What is said of a case before it is run.
 #include "app/foresight.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "case_text.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Several processes that share the solution: mpirun -n 2.
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 #include "run_results.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Runs that were stopped in the middle and went on: the end is the same as without.
 #include "held_program.h"
-#include "io/pvd.h"
+#include <kropla/io/pvd.h>
 #include "run_results.h"
 
 #include <gtest/gtest.h>

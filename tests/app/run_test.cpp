@@ -1,10 +1,10 @@
 // A run as users meet it: what it leaves in its folder, and how it ends when it cannot go on.
 #include "app/check.h"
 #include "held_program.h"
-#include "io/checkpoint.h"
-#include "io/pvd.h"
-#include "io/vtk.h"
-#include "mesh/quality.h"
+#include <kropla/io/checkpoint.h>
+#include <kropla/io/pvd.h>
+#include <kropla/io/vtk.h>
+#include <kropla/mesh/quality.h>
 #include "run_results.h"
 
 #include <gtest/gtest.h>

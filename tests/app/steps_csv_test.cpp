@@ -1,6 +1,6 @@
 #include "app/step_row.h"
 #include "app/steps_csv.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "base/index.h"
+#include <kropla/base/index.h>
 
 #include "base/checks.h"
 #include "base/random.h"

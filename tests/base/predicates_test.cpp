@@ -1,7 +1,7 @@
 // The predicates against integer arithmetic of any length: coordinates are scaled by a power of two until all
 // are integers, which changes no sign and loses nothing.
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 
 #include "base/predicates_filter.h"
 #include "base/random.h"

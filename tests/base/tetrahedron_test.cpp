@@ -1,6 +1,6 @@
 #include "base/tetrahedron.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "base/random.h"
 
 #include <gtest/gtest.h>

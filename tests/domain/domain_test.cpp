@@ -1,5 +1,5 @@
-#include "base/error.h"
-#include "domain/domain.h"
+#include <kropla/base/error.h>
+#include <kropla/domain/domain.h>
 #include "domain/shapes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/approach.h"
 #include "domain/paths.h"
 #include "domain/shapes.h"

@@ -1,4 +1,4 @@
-#include "domain/shape.h"
+#include <kropla/domain/shape.h>
 #include "domain/shapes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/random.h"
-#include "domain/domain.h"
+#include <kropla/domain/domain.h>
 
 #include <string>
 #include <utility>

@@ -1,5 +1,5 @@
 // Shapes that triangles bound.
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "domain/shapes.h"
 #include "domain/surfaces.h"
 

@@ -1,10 +1,10 @@
 #include "generate/delaunay.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "base/random.h"
 #include "base/tetrahedron.h"
 #include "generate/hilbert.h"
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 
 #include <gtest/gtest.h>
 

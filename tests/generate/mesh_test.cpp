@@ -1,10 +1,10 @@
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "generate/box.h"
 #include "generate/domains.h"
-#include "generate/generate.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/generate/generate.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "generate/normals.h"
 
 #include "generate/domains.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 
 #include <gtest/gtest.h>
 

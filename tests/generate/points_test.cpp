@@ -2,7 +2,7 @@
 #include "generate/box.h"
 #include "generate/clearance.h"
 #include "generate/domains.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "generate/sampling.h"
 
 #include <gtest/gtest.h>

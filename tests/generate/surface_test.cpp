@@ -1,5 +1,5 @@
 #include "generate/domains.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "generate/skin.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // The making of the initial mesh, followed and ended from outside.
 #include "base/random.h"
-#include "base/watch.h"
+#include <kropla/base/watch.h>
 #include "generate/domains.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "io/checkpoint.h"
+#include <kropla/io/checkpoint.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "examples.h"
 #include "io/file.h"
 

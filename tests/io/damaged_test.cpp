@@ -1,7 +1,7 @@
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "examples.h"
 #include "io/file.h"
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 
 /// Asked by the leak sanitizer: VTK's reader loses its array of cell types where it stops at certain errors.
 extern "C" const char* __lsan_default_suppressions() { return "leak:vtkUnsignedCharArray"; }

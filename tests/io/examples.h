@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/random.h"
-#include "mesh/mesh.h"
+#include <kropla/mesh/mesh.h>
 
 #include <filesystem>
 #include <fstream>

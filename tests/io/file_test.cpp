@@ -1,6 +1,6 @@
 #include "io/file.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "examples.h"
 
 #include <csignal>

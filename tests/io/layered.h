@@ -1,8 +1,8 @@
 #pragma once
 
 #include "examples.h"
-#include "mesh/prisms.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <cmath>

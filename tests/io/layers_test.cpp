@@ -1,11 +1,11 @@
 // Prism layers in files: as VTK sees them, and back.
 
-#include "base/error.h"
-#include "io/checkpoint.h"
-#include "io/vtk.h"
+#include <kropla/base/error.h>
+#include <kropla/io/checkpoint.h>
+#include <kropla/io/vtk.h>
 #include "layered.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <vtkCell.h>
 #include <vtkCellData.h>

@@ -1,6 +1,6 @@
-#include "io/pvd.h"
+#include <kropla/io/pvd.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "examples.h"
 #include "io/file.h"
 

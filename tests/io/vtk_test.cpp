@@ -1,10 +1,10 @@
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "examples.h"
 #include "io/file.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <limits>
 #include <vtkCell.h>

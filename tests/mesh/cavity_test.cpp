@@ -1,10 +1,10 @@
-#include "mesh/cavity.h"
+#include <kropla/mesh/cavity.h>
 
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
 #include "mesh/proposals.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "mesh/index_set.h"
 
 #include "base/random.h"
-#include "mesh/mesh.h"
+#include <kropla/mesh/mesh.h>
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "mesh/mesh.h"
+#include <kropla/mesh/mesh.h>
 
-#include "base/error.h"
-#include "mesh/cavity.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/cavity.h>
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "mesh/meshes.h"
 
 #include "base/random.h"
-#include "mesh/prisms.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/topology.h>
 
 #include <map>
 #include <numbers>

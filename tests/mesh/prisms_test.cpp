@@ -1,12 +1,12 @@
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 
 #include "base/random.h"
 #include "base/tetrahedron.h"
-#include "mesh/cavity.h"
+#include <kropla/mesh/cavity.h>
 #include "mesh/meshes.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "mesh/properties.h"
 
-#include "mesh/quality.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <set>

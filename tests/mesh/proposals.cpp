@@ -1,6 +1,6 @@
 #include "mesh/proposals.h"
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 
 namespace kropla {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/cavity.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/cavity.h>
+#include <kropla/mesh/topology.h>
 
 namespace kropla {
 

@@ -1,4 +1,4 @@
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 
 #include "mesh/meshes.h"
 

@@ -2,8 +2,8 @@
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
 #include "mesh/proposals.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "mesh/topology.h"
+#include <kropla/mesh/topology.h>
 
-#include "base/predicates.h"
+#include <kropla/base/predicates.h>
 #include "mesh/meshes.h"
 #include "mesh/proposals.h"
 

@@ -1,7 +1,7 @@
 #include "mesh/meshes.h"
-#include "mesh/prisms.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "mesh/verify.h"
+#include <kropla/mesh/verify.h>
 
 #include "mesh/meshes.h"
 #include "mesh/proposals.h"

@@ -1,6 +1,6 @@
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "io/file.h"
-#include "io/vtk.h"
+#include <kropla/io/vtk.h>
 #include "report/page.h"
 #include "report/run_files.h"
 #include "tiny_run.h"

@@ -1,4 +1,4 @@
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "report/table.h"
 
 #include <gtest/gtest.h>

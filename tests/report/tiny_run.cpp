@@ -1,8 +1,8 @@
 #include "tiny_run.h"
 
 #include "io/file.h"
-#include "io/pvd.h"
-#include "io/vtk.h"
+#include <kropla/io/pvd.h>
+#include <kropla/io/vtk.h>
 
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 #include "base/random.h"
 #include "meshes.h"
-#include "mesh/prisms.h"
+#include <kropla/mesh/prisms.h>
 #include "simulate/carried.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "meshes.h"
 #include "session.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // The heat that passes the surface of a body, as step_heat reports it.
 
-#include "adapt/adapt.h"
+#include <kropla/adapt/adapt.h>
 #include "domain/layer_room.h"
-#include "generate/generate.h"
+#include <kropla/generate/generate.h>
 #include "meshes.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/quality.h>
 #include "session.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "meshes.h"
 #include "session.h"
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "base/random.h"
 #include "simulate/elements.h"
 #include "simulate/flow_potential.h"

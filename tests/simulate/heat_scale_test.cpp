@@ -1,8 +1,8 @@
 // Units, contrasts and time steps: nothing of them matters to the solvers.
 #include "meshes.h"
 #include "session.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
 
 #include <gtest/gtest.h>
 

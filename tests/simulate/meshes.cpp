@@ -1,6 +1,6 @@
 #include "meshes.h"
 
-#include "mesh/cells.h"
+#include <kropla/mesh/cells.h>
 #include "simulate/elements.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/mesh.h"
-#include "simulate/heat.h"
+#include <kropla/mesh/mesh.h>
+#include <kropla/simulate/heat.h>
 
 #include <functional>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "simulate/petsc.h"
+#include <kropla/simulate/petsc.h>
 
 namespace kropla {
 

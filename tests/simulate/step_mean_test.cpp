@@ -1,6 +1,6 @@
 #include "simulate/step_mean.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "step/advance.h"
+#include <kropla/step/advance.h>
 
 #include "adapt/cases.h"
-#include "base/error.h"
-#include "mesh/quality.h"
-#include "mesh/verify.h"
-#include "step/initial_mesh.h"
+#include <kropla/base/error.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <gtest/gtest.h>
 

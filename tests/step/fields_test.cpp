@@ -1,8 +1,8 @@
-#include "step/fields.h"
+#include <kropla/step/fields.h>
 
 #include "adapt/cases.h"
-#include "adapt/attempt.h"
-#include "mesh/quality.h"
+#include <kropla/adapt/attempt.h>
+#include <kropla/mesh/quality.h>
 
 #include <gtest/gtest.h>
 

@@ -2,11 +2,11 @@
 
 #include "adapt/cases.h"
 #include "base/random.h"
-#include "generate/generate.h"
-#include "mesh/cavity.h"
+#include <kropla/generate/generate.h>
+#include <kropla/mesh/cavity.h>
 #include "mesh/proposals.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 

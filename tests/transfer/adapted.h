@@ -1,7 +1,7 @@
 #pragma once
 
-#include "adapt/adapt.h"
-#include "mesh/mesh.h"
+#include <kropla/adapt/adapt.h>
+#include <kropla/mesh/mesh.h>
 
 #include <cstdint>
 #include <functional>

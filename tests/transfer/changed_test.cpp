@@ -1,7 +1,7 @@
 #include "adapt/cases.h"
 #include "mesh/meshes.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 #include "transfer/adapted.h"
 #include "transfer/changed.h"
 

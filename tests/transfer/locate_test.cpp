@@ -1,8 +1,8 @@
 #include "base/random.h"
 #include "mesh/meshes.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "transfer/transfer.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/transfer/transfer.h>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "mesh/meshes.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 #include "transfer/adapted.h"
 #include "transfer/overlap.h"
-#include "transfer/transfer.h"
+#include "transfer/geometry.h"
 
 #include <gtest/gtest.h>
 
@@ -40,8 +40,8 @@ void expect_covered(const Mesh& before, const Mesh& after, const ChangedCells& c
 
 void expect_exact_cover(const Mesh& before, const Mesh& after) {
     const TransferPlan plan = plan_transfer(before, after);
-    ASSERT_FALSE(plan.changed.come.empty());
-    expect_covered(before, after, plan.changed, plan.overlaps);
+    ASSERT_FALSE(plan.geometry->changed.come.empty());
+    expect_covered(before, after, plan.geometry->changed, plan.geometry->overlaps);
 }
 
 TEST(Overlaps, CoverJitteredCubes) {
@@ -50,9 +50,9 @@ TEST(Overlaps, CoverJitteredCubes) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Mesh a = jittered_cube(6, seed), b = jittered_cube(5, seed + 100);
         const TransferPlan plan = plan_transfer(a, b);
-        expect_covered(a, b, plan.changed, plan.overlaps);
-        for (std::size_t i = 0; i < plan.changed.come.size(); ++i) pairs += plan.overlaps.cell(i).size();
-        searched += plan.overlaps.searched;
+        expect_covered(a, b, plan.geometry->changed, plan.geometry->overlaps);
+        for (std::size_t i = 0; i < plan.geometry->changed.come.size(); ++i) pairs += plan.geometry->overlaps.cell(i).size();
+        searched += plan.geometry->overlaps.searched;
     }
     EXPECT_GE(pairs, 50000u);
     EXPECT_EQ(searched, 0u);  // walking from neighbour to neighbour was enough
@@ -97,14 +97,14 @@ TEST(Overlaps, NodalWeightsAreIntegralsOfShapeFunctions) {
     // times them.
     const Mesh a = jittered_cube(4, 1), b = jittered_cube(3, 2);
     const TransferPlan plan = plan_transfer(a, b);
-    for (std::size_t i = 0; i < plan.changed.come.size(); ++i) {
-        const auto& corners = b.tets[plan.changed.come[i]];
-        const double whole = volume(b, plan.changed.come[i]);
+    for (std::size_t i = 0; i < plan.geometry->changed.come.size(); ++i) {
+        const auto& corners = b.tets[plan.geometry->changed.come[i]];
+        const double whole = volume(b, plan.geometry->changed.come[i]);
         double x_sum = 0;
         for (Vertex v : corners) x_sum += b.position[v].x;
         for (std::size_t k = 0; k < 4; ++k) {
             double one = 0, x = 0;
-            for (const NodalShare& share : plan.overlaps.nodal(i)) {
+            for (const NodalShare& share : plan.geometry->overlaps.nodal(i)) {
                 one += share.weight[k];
                 x += share.weight[k] * a.position[share.from].x;
             }
@@ -121,7 +121,7 @@ TEST(Overlaps, AreTheSameBitsForAnyNumberOfThreads) {
                                                   threads);
         const TransferPlan plan = plan_transfer(a, b);
         std::vector<double> all;
-        for (const auto& chunk : plan.overlaps.chunks)
+        for (const auto& chunk : plan.geometry->overlaps.chunks)
             for (const NodalShare& share : chunk.nodal)
                 all.insert(all.end(), share.weight.begin(), share.weight.end());
         return all;

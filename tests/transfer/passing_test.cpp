@@ -1,17 +1,17 @@
 // Transfers where there is no room: in gaps of one cell between interfaces, and between bodies that pass.
 
 #include "adapt/cases.h"
-#include "adapt/attempt.h"
-#include "base/error.h"
+#include <kropla/adapt/attempt.h>
+#include <kropla/base/error.h>
 #include "base/random.h"
-#include "mesh/cavity.h"
+#include <kropla/mesh/cavity.h>
 #include "mesh/meshes.h"
 #include "mesh/proposals.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 #include "transfer/adapted.h"
-#include "transfer/transfer.h"
+#include "transfer/geometry.h"
 
 #include <gtest/gtest.h>
 
@@ -116,13 +116,13 @@ TEST(Project, RefusesWhatIsNotFinite) {
     const AdaptedMesh mesh = adapted_mesh(1);
     const TransferPlan plan = plan_of(mesh);
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    const Vertex some = mesh.before.tets[plan.changed.gone.front()][0];
+    const Vertex some = mesh.before.tets[plan.geometry->changed.gone.front()][0];
     for (const double value : {nan, infinity, -infinity}) {
         NodalValues field = noise(mesh.before, 1);
         field[some] = value;
         EXPECT_THROW((void)project(plan, field), FieldError) << value;
         Array<Tet, double> cells(mesh.before.tets.size(), 1.0);
-        cells[plan.changed.gone.back()] = value;
+        cells[plan.geometry->changed.gone.back()] = value;
         EXPECT_THROW((void)project(plan, cells), FieldError) << value;
         NodalValues good = noise(mesh.before, 1);
         for (const auto& weight : {std::vector{1.0, value}, std::vector{1.0}})  // or one is missing
@@ -199,7 +199,7 @@ TEST_P(Passing, LosesNothingAndKeepsItsBounds) {
         const Mesh &before_mesh = step->before(), &after_mesh = step->current();
         const TransferPlan plan =
             plan_transfer(before_mesh, after_mesh, step->remeshed().cells, step->remeshed().vertices);
-        changed += plan.changed.come.size();
+        changed += plan.geometry->changed.come.size();
         EXPECT_LE(step->statistics().cells_touched, count_tets(before_mesh));
         const NodalValues hot = temperatures(before_mesh, snapshot(domain, moving.time()));
         for (const NodalValues& old : {noise(before_mesh, GetParam()), hot}) {

@@ -1,16 +1,16 @@
 #include "adapt/cases.h"
-#include "adapt/attempt.h"
-#include "base/error.h"
+#include <kropla/adapt/attempt.h>
+#include <kropla/base/error.h>
 #include "base/random.h"
-#include "base/watch.h"
-#include "generate/generate.h"
+#include <kropla/base/watch.h>
+#include <kropla/generate/generate.h>
 #include "mesh/meshes.h"
-#include "mesh/prisms.h"
-#include "mesh/quality.h"
-#include "mesh/topology.h"
-#include "mesh/verify.h"
+#include <kropla/mesh/prisms.h>
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
 #include "transfer/adapted.h"
-#include "transfer/transfer.h"
+#include "transfer/geometry.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(Project, IsEndedByItsWatch) {
                                                  &watch)),
                  Interrupted);
     const TransferPlan plan = plan_of(mesh);
-    EXPECT_THROW(static_cast<void>(overlaps(mesh.before, mesh.after, plan.changed, &watch)), Interrupted);
+    EXPECT_THROW(static_cast<void>(overlaps(mesh.before, mesh.after, plan.geometry->changed, &watch)), Interrupted);
     NodalValues field = values_at(mesh.before, jump);
     Array<Vertex, Vec3> vectors(mesh.before.position.size(), Vec3{1, 2, 3});
     Array<Tet, double> cells(mesh.before.tets.size(), 4.0);
@@ -65,7 +65,7 @@ TEST(Project, OfAVectorIsWrittenWholeOrNotAtAll) {
     const TransferPlan plan = plan_of(mesh);
     Array<Vertex, Vec3> vectors(mesh.before.position.size());
     for (Vertex v : vectors.indices()) vectors[v] = {jump(mesh.before.position[v]), 1, 1};
-    vectors[mesh.before.tets[plan.changed.gone.front()][0]].z = INFINITY;
+    vectors[mesh.before.tets[plan.geometry->changed.gone.front()][0]].z = INFINITY;
     const auto old_vectors = vectors;
     EXPECT_THROW(project(plan, vectors), FieldError);
     EXPECT_EQ(vectors, old_vectors);
@@ -75,7 +75,7 @@ class ProjectAfterAdaptation : public testing::TestWithParam<std::uint64_t> {
 protected:
     void SetUp() override {
         ASSERT_EQ(verify(mesh.after), "");
-        ASSERT_GE(plan.changed.come.size(), 1700u);
+        ASSERT_GE(plan.geometry->changed.come.size(), 1700u);
     }
     void expect_integrals_kept(const NodalValues& old, const NodalValues& fresh) const {
         for (Region region : {surroundings, Region(1)}) {
@@ -136,7 +136,7 @@ TEST_P(ProjectAfterAdaptation, ChangesNothingAwayFromTheCellsThatTakePart) {
     NodalValues fresh = old;
     (void)project(plan, fresh, {.limit = false, .weight = {}});
     std::vector<bool> free(mesh.after.position.size(), false);
-    for (const MassBlock& block : plan.blocks)
+    for (const MassBlock& block : plan.geometry->blocks)
         for (Vertex v : block.free) free[static_cast<std::size_t>(v.value)] = true;
     int kept = 0;
     for (Vertex v : all_vertices(mesh.after)) {
@@ -214,7 +214,7 @@ TEST(Project, KeepsTheIntegralWhereASwapLeavesNoVertexFree) {
     const AdaptedMesh mesh = swapped_mesh(std::move(cubes));
     ASSERT_EQ(mesh.changes.cells.size(), 6u);  // a swap in each region
     const TransferPlan plan = plan_of(mesh);
-    EXPECT_GT(plan.cells, plan.changed.come.size());
+    EXPECT_GT(plan.cells, plan.geometry->changed.come.size());
     EXPECT_LT(plan.cells, mesh.after.tets.size() / 3);
     Random random{1};
     const NodalValues old = nodal_values(mesh.before, [&](Vertex) { return random.uniform(); });
@@ -254,7 +254,7 @@ TEST(Project, WeighsTheReportByRegion) {
     NodalValues one = nodal_values(mesh.before, [](Vertex) { return 1.0; });
     const TransferReport report = project(plan, one, {.limit = true, .weight = weight});
     double expected = 0;
-    for (const MassBlock& block : plan.blocks)
+    for (const MassBlock& block : plan.geometry->blocks)
         for (const MassCell& cell : block.cells)
             expected += cell.volume * weight[static_cast<std::size_t>(mesh.after.region[cell.tet].value)];
     EXPECT_NEAR(report.after, expected, 1e-12 * expected);
@@ -324,7 +324,7 @@ TEST(Project, AlongTheStepsOfAMovingMesh) {
         for (Vertex v : all_vertices(moving.reference()))
             ASSERT_NEAR(field[v], linear(moving.reference().position[v]), 1e-12);
         ASSERT_NEAR(field_integral(moving.reference(), field), content, 1e-12 * content);
-        changed += plan.changed.come.size();
+        changed += plan.geometry->changed.come.size();
     }
     EXPECT_GE(changed, 1300u);
 }

@@ -1,6 +1,6 @@
 #include "frames.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <vtkBoundingBox.h>
 #include <vtkCellData.h>

@@ -1,7 +1,7 @@
 // kropla-pictures RUN_DIR OUT_DIR: pictures of a run, like figures 2, 3, 5 and 6 of the paper, as PNG files.
 // It draws by VTK, which needs a screen: tools/draw-pictures gives it one in memory.
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 #include "frames.h"
 #include "scene.h"
 #include "sheet.h"

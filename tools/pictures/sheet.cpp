@@ -1,6 +1,6 @@
 #include "sheet.h"
 
-#include "base/error.h"
+#include <kropla/base/error.h>
 
 #include <vtkActor2D.h>
 #include <vtkCamera.h>
