@@ -6,7 +6,8 @@ function(kropla_settings target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno -Wno-psabi)
     if(KROPLA_DEVELOPER)
-        target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Werror)
+        target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Werror
+                               $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>)  # which g++'s -Wconversion has not
     endif()
     if(KROPLA_SANITIZE)
         # What is undefined ends the program: a test that goes on past it would be counted as passed.

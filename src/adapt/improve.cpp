@@ -58,8 +58,7 @@ bool is_worse(const BadCell& a, const BadCell& b) {
 /// them is there yet.
 void add_bad(const Mesh& mesh, std::vector<Tet> cells, double above, std::vector<BadCell>& bad) {
     std::ranges::sort(cells);
-    const auto repeated = std::ranges::unique(cells);
-    cells.erase(repeated.begin(), repeated.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     const auto known = static_cast<std::ptrdiff_t>(bad.size());
     for (Tet t : cells)
         if (alive(mesh, t))

@@ -34,8 +34,7 @@ std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
     for (const PrismLayer& layer : mesh.layers)
         if (layer.body == region) vertices.insert(vertices.end(), layer.columns.begin(), layer.columns.end());
     std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
 }
 

@@ -25,8 +25,6 @@ constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface size
 
 constexpr std::size_t too_much = 2;  // of a zone, in what is in reach: then the rest is left out
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The motion of one body over a step.
 struct Travel {
     Shape from, to;

@@ -200,8 +200,8 @@ std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const Zone& zone, const Ada
     std::ranges::sort(wrong, {}, [&](const WrongEdge& w) {
         return std::tuple(rank(w.ratio), w.edge.a, w.edge.b, w.cell);
     });
-    const auto repeated = std::ranges::unique(wrong, {}, &WrongEdge::edge);
-    wrong.erase(repeated.begin(), repeated.end());
+    const auto is_same = [](const WrongEdge& a, const WrongEdge& b) { return a.edge == b.edge; };
+    wrong.erase(std::unique(wrong.begin(), wrong.end(), is_same), wrong.end());
     return wrong;
 }
 

@@ -163,7 +163,7 @@ bool can_be_filled(const Mesh& mesh, const Cluster& cluster, const Hole& hole, c
 }
 
 std::array<int, 3> rotated_to_least(std::array<int, 3> f) {
-    std::ranges::rotate(f, std::ranges::min_element(f));
+    std::rotate(f.begin(), std::ranges::min_element(f), f.end());
     return f;
 }
 

@@ -67,8 +67,7 @@ void settle(Zone& zone, const Mesh& mesh, const IndexSet<Vertex>& touched) {
         auto& ball = zone.ball[v];
         std::erase_if(ball, [&](Tet t) { return !zone.holds.contains(t) || corner_of(mesh, t, v) < 0; });
         std::ranges::sort(ball);
-        const auto twice = std::ranges::unique(ball);
-        ball.erase(twice.begin(), twice.end());
+        ball.erase(std::unique(ball.begin(), ball.end()), ball.end());
         zone.axes[v] = axes_of(zone, mesh, v);
     }, 32);
     for (Vertex v : vertices)

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <ranges>
 #include <vector>
 
 namespace kropla {
@@ -22,6 +21,30 @@ struct Index {
 
     [[nodiscard]] constexpr bool exists() const { return value >= 0; }
     auto operator<=>(const Index&) const = default;
+};
+
+/// The indices from `first` up to `last`, that one left out. (Not of std::views: clang 14 cannot read those of Debian 12.)
+template <class I>
+struct IndexRange {
+    struct Iterator {
+        using value_type = I;
+        using difference_type = std::ptrdiff_t;
+        I at;
+        I operator*() const { return at; }
+        Iterator& operator++() {
+            ++at.value;
+            return *this;
+        }
+        Iterator operator++(int) {
+            Iterator before = *this;
+            ++at.value;
+            return before;
+        }
+        bool operator==(const Iterator&) const = default;
+    };
+    I first, last;
+    [[nodiscard]] Iterator begin() const { return {first}; }
+    [[nodiscard]] Iterator end() const { return {last}; }
 };
 
 /// A std::vector that is indexed by one kind of Index only; developer and debug builds check that it is there.
@@ -49,10 +72,7 @@ public:
     void reserve(std::size_t size) { items_.reserve(size); }
 
     /// All indices, in order: `for (Tet t : mesh.tets.indices())`.
-    [[nodiscard]] auto indices() const {
-        return std::views::iota(std::int32_t{0}, static_cast<std::int32_t>(items_.size())) |
-               std::views::transform([](std::int32_t i) { return I(i); });
-    }
+    [[nodiscard]] IndexRange<I> indices() const { return {I(std::size_t{0}), I(items_.size())}; }
 
     auto begin() const { return items_.begin(); }
     auto end() const { return items_.end(); }

@@ -117,8 +117,7 @@ std::vector<double> Look::times_to_look_at() const {
     for (double time : options_.also_at)
         if (time > start && time < options_.end) times.push_back(time);
     std::ranges::sort(times);
-    const auto repeated = std::ranges::unique(times);
-    times.erase(repeated.begin(), repeated.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
     return times;
 }
 

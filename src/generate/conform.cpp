@@ -25,7 +25,7 @@ namespace {
 
 Turn turn(Vertex a, Vertex b, Vertex c) {
     Turn abc = {a, b, c};
-    std::ranges::rotate(abc, std::ranges::min_element(abc));
+    std::rotate(abc.begin(), std::ranges::min_element(abc), abc.end());
     return abc;
 }
 

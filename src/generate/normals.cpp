@@ -43,7 +43,7 @@ std::vector<int> fitted_points(const Rings& around, int v) {
     for (int w : around.points[at(v)])
         found.insert(found.end(), around.points[at(w)].begin(), around.points[at(w)].end());
     std::ranges::sort(found);
-    found.erase(std::ranges::unique(found).begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     std::erase(found, v);
     return found;
 }

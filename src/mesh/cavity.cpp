@@ -190,8 +190,8 @@ void write_added(Mesh& mesh, const Cavity& cavity, std::span<const Tet> names) {
 void free_lost_vertices(Mesh& mesh, std::vector<Vertex>& touched) {
     std::erase_if(touched, [&](Vertex v) { return alive(mesh, v); });
     std::ranges::sort(touched);
-    const auto repeated = std::ranges::unique(touched);
-    mesh.free_vertices.insert(mesh.free_vertices.end(), touched.begin(), repeated.begin());
+    const auto repeated = std::unique(touched.begin(), touched.end());
+    mesh.free_vertices.insert(mesh.free_vertices.end(), touched.begin(), repeated);
 }
 
 }  // namespace

@@ -121,8 +121,7 @@ std::vector<Vertex> adjacent_vertices(const Mesh& mesh, Vertex v) {
         for (Vertex w : mesh.tets[t])
             if (w != v) vertices.push_back(w);
     std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
 }
 
@@ -145,9 +144,9 @@ void shell(const Mesh& mesh, Edge e, Tet t, Shell& s) {
     });
     // The tets found last, backwards, come before the first.
     std::ranges::reverse(s.tets.begin() + seen, s.tets.end());
-    std::ranges::rotate(s.tets, s.tets.begin() + seen);
+    std::rotate(s.tets.begin(), s.tets.begin() + seen, s.tets.end());
     std::ranges::reverse(s.ring.begin() + seen + 1, s.ring.end());
-    std::ranges::rotate(s.ring, s.ring.begin() + seen + 1);
+    std::rotate(s.ring.begin(), s.ring.begin() + seen + 1, s.ring.end());
 }
 
 Shell shell(const Mesh& mesh, Edge e, Tet t) {

@@ -20,7 +20,7 @@ std::string named(Layer l) { return "layer " + std::to_string(l.value); }
 
 /// A triangle of vertices with its least one first, its turn kept.
 Triangle turned(Triangle t) {
-    std::ranges::rotate(t, std::ranges::min_element(t));
+    std::rotate(t.begin(), std::ranges::min_element(t), t.end());
     return t;
 }
 

@@ -133,9 +133,9 @@ std::variant<RemeshedAttempt, Refusal> attempt_step(MovingMesh& moving, Fields& 
 
 int count_new_cells(const Mesh& mesh, std::vector<Tet> cells) {
     std::ranges::sort(cells);
-    const auto repeated = std::ranges::unique(cells);
+    const auto repeated = std::unique(cells.begin(), cells.end());
     const auto is_there = [&](Tet t) { return alive(mesh, t); };
-    return static_cast<int>(std::count_if(cells.begin(), repeated.begin(), is_there));
+    return static_cast<int>(std::count_if(cells.begin(), repeated, is_there));
 }
 
 void report_changes(const StepStatistics& mesh, int tets_before, const Mesh& reference, Advanced& done) {

@@ -25,8 +25,7 @@ std::vector<Vertex> vertices_of(const Mesh& after, std::span<const Facet> facets
     for (const Facet facet : facets)
         for (Vertex v : facet_vertices(after, facet)) vertices.push_back(v);
     std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
 }
 

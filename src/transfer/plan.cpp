@@ -42,8 +42,8 @@ std::vector<GivenVertex> given_vertices(const TransferGeometry& geometry, const 
             }
         }
     std::ranges::stable_sort(given, {}, &GivenVertex::vertex);
-    const auto repeated = std::ranges::unique(given, {}, &GivenVertex::vertex);
-    given.erase(repeated.begin(), repeated.end());
+    const auto is_same = [](const GivenVertex& a, const GivenVertex& b) { return a.vertex == b.vertex; };
+    given.erase(std::unique(given.begin(), given.end(), is_same), given.end());
     return given;
 }
 
