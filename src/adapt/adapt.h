@@ -103,6 +103,7 @@ struct PaperMethod {
     LaplaceWeights weights = {.x1 = 1, .x2 = 1};
     double much_less = 0.5;  // [limits] of R/r: "much less than ten", better cells are left alone
     double about = 0.8;      // [limits] of R/r: "about ten or more", the three steps of Fig. 5; after the step, the cluster
+    double remeshed = 0.6;   // [limits] of R/r: what a cluster of one or two rings is to come to; a larger one, to `about`
     int sweeps = 10;         // of smoothing, at most, each time
 };
 
@@ -150,6 +151,9 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 /// fall.
 [[nodiscard]] std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> cluster, const Snapshot& at,
                                                    const AdaptOptions& options = {});
+
+/// All tets of the region.
+[[nodiscard]] std::vector<Tet> whole_region(const Mesh& mesh, Region region);
 
 /// The cells and one more ring of cells of their region, that of the first.
 [[nodiscard]] std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells);

@@ -22,7 +22,8 @@ constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
-constexpr std::size_t refusals_until_all_anew = 4;  // by the paper's method
+constexpr std::size_t refusals_until_all_anew = 3;  // by the paper's method
+constexpr double cut_out_of_trouble = 50;           // by the same, AdaptOptions::cut_out
 constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
 constexpr int rings_of_trouble = 2;          // around such a cell, at most
 constexpr double harder = 0.92;          // there, cells must be better by this than elsewhere
@@ -60,13 +61,14 @@ double worst_aspect_ratio_of(const Mesh& mesh, std::span<const Tet> cells) {
     return worst;
 }
 
-std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, const Snapshot& at_time) {
+/// Within so many target sizes of one of the places.
+std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, double sizes, const Snapshot& at_time) {
     std::vector<Tet> cells;
     for (Tet t : mesh.tets.indices()) {
         if (!alive(mesh, t) || mesh.region[t] != surroundings) continue;
         const Vec3 x = centroid(mesh, t);
         if (std::ranges::any_of(places, [&](const Vec3& p) {
-                return distance(p, x) < trouble_in_sizes * target_size(at_time, p);
+                return distance(p, x) < sizes * target_size(at_time, p);
             }))
             cells.push_back(t);
     }
@@ -133,7 +135,7 @@ Changes MeshStep::refine_by_size() {
     const Snapshot at_time = snapshot(domain_, time_);
     AdaptOptions options = options_;
     options.good_enough = std::max(3.5, harder * options_.good_enough);
-    auto cells = cells_near(current_, trouble_, at_time);
+    auto cells = cells_near(current_, trouble_, trouble_in_sizes, at_time);
     Changes changes = adapt_to_size(current_, cells, at_time, options);
     cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());
     changes += improve(current_, cells, at_time, options);
@@ -141,17 +143,28 @@ Changes MeshStep::refine_by_size() {
         options.floor = std::min(options_.floor, trouble_floor);
         options.largest_ring = std::min(options_.largest_ring, rings_of_trouble);
         options.whole_region = false;
-        changes += repair(current_, cells_near(current_, trouble_, at_time), at_time, options);
+        changes += repair(current_, cells_near(current_, trouble_, trouble_in_sizes, at_time), at_time, options);
     }
     return changes;
 }
 
-/// The same by clusters; the whole region at last.
+/// The same by clusters, in a part of the domain that grows with the refusals; the whole region at last.
 Changes MeshStep::refine_by_paper() {
     const Snapshot at_time = snapshot(domain_, time_);
     AdaptOptions options = options_;
-    options.whole_region = trouble_.size() >= refusals_until_all_anew;
-    return remesh_clusters(current_, cells_near(current_, trouble_, at_time), trouble_floor, at_time, options);
+    options.whole_region = false;
+    options.cut_out = cut_out_of_trouble;
+    if (trouble_.size() >= refusals_until_all_anew) {
+        const auto cavity = cluster_remesh(current_, whole_region(current_, surroundings), at_time, options);
+        if (cavity && cavity->worst_after <= about_the_limit(options_)) {
+            Changes changes;
+            carry_out(current_, *cavity, changes);
+            ++changes.global_remeshes;
+            return changes;
+        }
+    }
+    const auto cells = cells_near(current_, trouble_, static_cast<double>(trouble_.size()) * trouble_in_sizes, at_time);
+    return remesh_clusters(current_, cells, std::min(options_.floor, trouble_floor), at_time, options);
 }
 
 void MeshStep::move_boundary(double t) {
@@ -338,8 +351,8 @@ void MeshStep::refuse() {
 Changes MeshStep::remesh_by_paper() {
     AdaptOptions options = options_;
     options.whole_region = false;  // what meets the floor is not worth it
-    const double about_limit = options_.paper->about * options_.floor;
-    return remesh_clusters(current_, cells_above(about_limit), about_limit, snapshot(domain_, target_time_), options);
+    return remesh_clusters(current_, cells_above(options_.swap_above), about_the_limit(options_),
+                           snapshot(domain_, target_time_), options);
 }
 
 Changes MeshStep::remesh_by_size(const AdaptOptions& options) {

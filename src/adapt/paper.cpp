@@ -20,6 +20,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_gain = 1e-3;  // [-] of R/r, by a swap
+constexpr int rings_to_last = 2;     // around a bad cell: the small clusters, which are to be better than they must
 
 Vec3 laplacian_place(const Zone& zone, const Mesh& mesh, Vertex v, const LaplaceWeights& weights) {
     std::vector<Vertex> around;
@@ -54,6 +55,23 @@ int smooth_for_quality(Zone& zone, const Mesh& mesh, std::span<const Vertex> ver
     return moved;
 }
 
+/// Where the zone's vertices are, and how good that is.
+struct Places {
+    std::vector<Vec3> of_vertices;
+    double worst;
+};
+
+Places places(const Zone& zone, double worst) {
+    Places now{{}, worst};
+    for (Vertex v : zone.vertices) now.of_vertices.push_back(zone.place[v]);
+    return now;
+}
+
+void put_back(Zone& zone, const Mesh& mesh, const Places& then) {
+    for (std::size_t i = 0; i < zone.vertices.size(); ++i) zone.place[zone.vertices[i]] = then.of_vertices[i];
+    measure(zone, mesh);
+}
+
 double worst_ratio(const Zone& zone) {
     double worst = 0;
     for (Tet t : zone.cells) worst = std::max(worst, zone.ratio[t]);
@@ -80,14 +98,38 @@ std::optional<Cavity> best_swap(const Mesh& mesh, Tet t) {
 
 bool is_worse_than(const Mesh& mesh, Tet t, double above) { return alive(mesh, t) && aspect_ratio(mesh, t) > above; }
 
+/// Swaps cells worse than `above` away, and those that replace them.
+Changes swap_worse(Mesh& mesh, std::span<const Tet> cells, double above, const Watch* watch) {
+    Changes changes;
+    std::vector<Tet> bad(cells.begin(), cells.end());
+    for (std::size_t i = 0; i < bad.size(); ++i) {
+        if (!is_worse_than(mesh, bad[i], above)) continue;
+        heed(watch);
+        const auto cavity = best_swap(mesh, bad[i]);
+        if (!cavity) continue;
+        const auto known = static_cast<std::ptrdiff_t>(changes.cells.size());
+        carry_out(mesh, *cavity, changes);
+        ++changes.swaps;
+        bad.insert(bad.end(), changes.cells.begin() + known, changes.cells.end());
+    }
+    return changes;
+}
+
 }  // namespace
+
+double about_the_limit(const AdaptOptions& options) {
+    return std::min(options.floor, std::max(options.paper->about * options.floor, options.good_enough));
+}
 
 std::optional<Changes> smooth_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
     const PaperMethod& paper = *options.paper;
-    const double good = paper.much_less * options.floor, about_limit = paper.about * options.floor;
+    const double good = std::max(paper.much_less * options.floor, options.swap_above);
+    const double about_limit = about_the_limit(options);
     Changes changes;
     measure(zone, mesh);
-    for (double worst = worst_ratio(zone); worst > good && changes.smoothing_sweeps < paper.sweeps;) {
+    double worst = worst_ratio(zone);
+    Places best = places(zone, worst);
+    while (worst > good && changes.smoothing_sweeps < paper.sweeps) {
         heed(options.watch);
         const auto vertices = vertices_of_worse(zone, mesh, good);
         if (worst > about_limit) {
@@ -99,30 +141,30 @@ std::optional<Changes> smooth_places(Zone& zone, const Mesh& mesh, const AdaptOp
         ++changes.smoothing_sweeps;
         changes.moved += moved;
         worst = worst_ratio(zone);
+        if (worst <= best.worst) best = places(zone, worst);
         if (moved == 0) break;
     }
-    if (!std::isfinite(worst_ratio(zone))) return std::nullopt;
+    if (worst > best.worst) put_back(zone, mesh, best);
+    if (!std::isfinite(best.worst)) return std::nullopt;
     return changes;
 }
 
 Changes remesh_clusters(Mesh& mesh, std::span<const Tet> cells, double above, const Snapshot& at_time,
                         const AdaptOptions& options) {
-    AdaptOptions cluster = options;
-    cluster.floor = above;
-    Changes changes;
+    Changes changes = swap_worse(mesh, cells, options.swap_above, options.watch);
     std::vector<Tet> poor(cells.begin(), cells.end());
-    for (std::size_t i = 0; i < poor.size(); ++i) {
-        if (!is_worse_than(mesh, poor[i], above)) continue;
-        heed(options.watch);
-        const auto cavity = best_swap(mesh, poor[i]);
-        if (!cavity) continue;
-        const std::size_t known = changes.cells.size();
-        carry_out(mesh, *cavity, changes);
-        ++changes.swaps;
-        poor.insert(poor.end(), changes.cells.begin() + static_cast<std::ptrdiff_t>(known), changes.cells.end());
-    }
+    poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
     std::erase_if(poor, [&](Tet t) { return !is_worse_than(mesh, t, above); });
-    changes += repair(mesh, poor, at_time, cluster);
+    AdaptOptions well = options;  // so that it lasts, where a small cluster does that
+    well.floor = std::min(above, std::max(options.paper->remeshed * options.floor, options.good_enough));
+    well.largest_ring = rings_to_last;
+    well.whole_region = false;
+    changes += repair(mesh, poor, at_time, well);
+    AdaptOptions barely = options;
+    barely.floor = above;
+    std::vector<Tet> all(cells.begin(), cells.end());
+    all.insert(all.end(), changes.cells.begin(), changes.cells.end());
+    changes += repair(mesh, all, at_time, barely);
     return changes;
 }
 

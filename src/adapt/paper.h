@@ -11,8 +11,11 @@ namespace kropla {
 /// equalises volumes before (the paper's Fig. 5).
 [[nodiscard]] std::optional<Changes> smooth_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
 
-/// Of the cells those about the limit, or worse than `above` [-] R/r: they are swapped away; what is left of them is cut
-/// out in clusters, ring by ring, and re-triangulated (2.6, 2.2 after a refusal; the paper's 1.3).
+/// [-] R/r: cells above are "about ten or more".
+[[nodiscard]] double about_the_limit(const AdaptOptions& options);
+
+/// Swaps what is not good among the cells away; what is worse than `above` [-] R/r then is cut out in clusters, ring by
+/// ring, and re-triangulated (2.6, and 2.2 after a refusal; the paper's 1.3). No cell gets worse than `above`.
 Changes remesh_clusters(Mesh& mesh, std::span<const Tet> cells, double above, const Snapshot& at_time,
                         const AdaptOptions& options);
 
