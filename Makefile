@@ -7,7 +7,7 @@
 # make bench-peers  the moving droplet by Kropla and by the mesh generators that are installed (Gmsh, TetGen), one
 #                 table; STEPS=10: fewer meshes of the others
 # make bench-engine  work in proportion to change, and what a second thread saves
-# make bench-strategies  the same motion by ours and by three plainer ways, one table
+# make bench-strategies  the same motion by our method, by the paper's and by three plainer ways, one table
 # make bench-spread  ways to spread a body's displacement into its surroundings
 # make bench-transfer  1000 transfers to and fro, by interpolation and by projection: docs/transfer.md
 # make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer

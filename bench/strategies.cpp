@@ -1,17 +1,19 @@
-// kropla_strategies [STEPS]: the same motion, that of cases/droplet.toml in STEPS steps (50 unless told), by four ways to
-// keep a mesh good. What the paper's conclusion claims of its alternation of weighted smoothing with local remeshing, and
-// what ours adds, against the plain ways:
-//   ours       MovingMesh: spread displacement, guarded smoothing, local operators, the repair ladder;
+// kropla_strategies [STEPS]: the same motion, that of cases/droplet.toml in STEPS steps (50 unless told), by several ways to
+// keep a mesh good. Two are methods of the library, taken step by step by `advance`, as a case file chooses them:
+//   kropla     spread displacement, optimised places, adaptation to size, local operators, the repair ladder;
+//   paper      the paper's own: weighted smoothing, its three modification steps, local clusters.
+// The others are plainer, to tell what the parts are worth:
 //   Laplacian  the body moves, its surroundings follow by sweeps of the standard Laplacian; the domain is meshed anew
 //              where R/r would pass 10;
 //   weighted   the same with the paper's steps: sweeps that equalise volumes, then sweeps that smooth, each guarded;
 //   local      no vertex of the surroundings moves; clusters of cells that are bad are cut out and meshed anew.
 // All obey the same rule: a step changes places only, and ends with every cell valid and R/r at most 10, or it is refused;
-// then the mesh is remeshed at the step's beginning and the step tried again, then with half the way. A way is given up after
-// a minute of processor time.
+// then the mesh is remeshed at the step's beginning and the step tried again, then with a part of the way. A plain way is
+// given up after a minute of processor time.
 
 #include "adapt/stepping.h"
 #include <kropla/step/initial_mesh.h>
+#include <kropla/step/stuck.h>
 #include <kropla/base/error.h>
 #include <kropla/mesh/quality.h>
 
@@ -67,7 +69,7 @@ void note_changes(const Changes& changes, Outcome& outcome) {
     outcome.global_remeshes += changes.global_remeshes;
 }
 
-// ---- the ways other than ours
+// ---- the plain ways
 
 bool is_good(const Mesh& mesh) { return worst_aspect_ratio(mesh, all_tets(mesh)) <= limit; }
 
@@ -187,21 +189,33 @@ Outcome run(const Way& way, const Mesh& start, int steps) {
     return outcome;
 }
 
-// ---- ours
+// ---- the methods
 
-Outcome run_ours(const Mesh& start, int steps) {
-    MovingMesh moving(droplet(of_the_case), start, 0);
+struct Method {
+    const char* name;
+    AdaptOptions options;
+};
+
+const Method methods[] = {{"kropla", {}}, {"paper", {.paper = PaperMethod{}}}};
+
+Outcome run(const Method& method, const Mesh& start, int steps) {
+    MovingMesh moving(droplet(of_the_case), start, 0, method.options);
     Outcome outcome;
-    for (int i = 1; i <= steps; ++i) {
-        const StepCost cost = step_to(moving, end * i / steps);
-        outcome.accepted += cost.accepted;
-        outcome.refused += cost.attempts - cost.accepted;
-        outcome.cpu_seconds += cost.cpu_seconds;
-        note_changes(cost.changes, outcome);
-        note_quality(moving.reference(), outcome);
-        outcome.way = static_cast<double>(i) / steps;
-        std::printf("\rours: step %d of %d  ", i, steps);
-        std::fflush(stdout);
+    try {
+        for (int i = 1; i <= steps; ++i) {
+            const StepCost cost = step_to(moving, end * i / steps);
+            outcome.accepted += cost.accepted;
+            outcome.refused += cost.attempts - cost.accepted;
+            outcome.cpu_seconds += cost.cpu_seconds;
+            note_changes(cost.changes, outcome);
+            note_quality(moving.reference(), outcome);
+            outcome.way = static_cast<double>(i) / steps;
+            std::printf("\r%s: step %d of %d, %d accepted, %d refused  ", method.name, i, steps, outcome.accepted,
+                        outcome.refused);
+            std::fflush(stdout);
+        }
+    } catch (const StuckError& error) {
+        std::printf("\n%s", error.what());
     }
     std::printf("\n");
     return outcome;
@@ -209,18 +223,23 @@ Outcome run_ours(const Mesh& start, int steps) {
 
 // ---- the largest step
 
-bool ours_takes(const Mesh& start, const Domain& domain) {
-    MovingMesh moving(domain, start, 0);
+bool takes(const Method& method, const Mesh& start, const Domain& domain) {
+    MovingMesh moving(domain, start, 0, method.options);
     return !move_bodies(Attempt(moving), 1).refusal();
 }
 
+bool takes(const Way& way, const Mesh& start, const Domain& domain) {
+    return attempt(way, start, domain, 0, 1).has_value();
+}
+
 /// In surface sizes, straight down from the start: the longest that is taken at once, as all shorter ones are.
-double largest_step(const Mesh& start, const Way* way) {
+template <class How>
+double largest_step(const Mesh& start, const How& how) {
     constexpr double rise = 0.25, most = 10;
     double taken = 0;
     for (double sizes = rise; sizes <= most; sizes += rise) {
         const Domain domain = droplet([sizes](double t) { return Pose{{0, 0, -sizes * 2e-4 * t}, {}}; });
-        if (way != nullptr ? !attempt(*way, start, domain, 0, 1) : !ours_takes(start, domain)) break;
+        if (!takes(how, start, domain)) break;
         taken = sizes;
     }
     return taken;
@@ -244,16 +263,17 @@ int main(int count, char** arguments) try {
     const int steps = count > 1 ? std::atoi(arguments[1]) : 50;
     if (steps < 1) return std::fprintf(stderr, "kropla_strategies [STEPS]\n"), 2;
     const Mesh start = initial_mesh(droplet(of_the_case), 1);
-    const Outcome ours = run_ours(start, steps);
-    std::vector<Outcome> others;
-    for (const Way& way : plain_ways) others.push_back(run(way, start, steps));
+    std::vector<Outcome> by_methods, by_plain_ways;
+    for (const Method& method : methods) by_methods.push_back(run(method, start, steps));
+    for (const Way& way : plain_ways) by_plain_ways.push_back(run(way, start, steps));
 
     std::printf("\n| way | share of the motion done | steps accepted | refused | meshed anew | clusters remeshed | swaps, splits, collapses | cells replaced "
                 "[1000] | worst R/r: median / of the run | mean R/r | mesh, CPU s per wanted step | largest step "
                 "[surface sizes] |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    print_row("ours", ours, largest_step(start, nullptr), steps);
-    for (std::size_t i = 0; i < others.size(); ++i)
-        print_row(plain_ways[i].name, others[i], largest_step(start, &plain_ways[i]), steps);
+    for (std::size_t i = 0; i < std::size(methods); ++i)
+        print_row(methods[i].name, by_methods[i], largest_step(start, methods[i]), steps);
+    for (std::size_t i = 0; i < std::size(plain_ways); ++i)
+        print_row(plain_ways[i].name, by_plain_ways[i], largest_step(start, plain_ways[i]), steps);
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "kropla_strategies: %s\n", error.what());

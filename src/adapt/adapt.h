@@ -46,7 +46,9 @@ struct LaplaceWeights {
     double x1 = 1, x2 = 0;
 };
 
-/// Where the weighted Laplacian puts `v`, kept on the faces of the box it lies on; on an interface it stays.
+/// Where the weighted Laplacian puts a vertex with neighbours at these places.
+[[nodiscard]] Vec3 laplacian_place(std::span<const Vec3> neighbours, const LaplaceWeights& weights);
+/// Where it puts `v`, kept on the faces of the box it lies on; on an interface it stays.
 [[nodiscard]] Vec3 laplacian_place(const Mesh& mesh, Vertex v, const LaplaceWeights& weights);
 
 /// One sweep over `vertices`, in order, each seeing the new places of those before it. Unguarded: cells may
@@ -95,6 +97,16 @@ inline constexpr int longest_ring = 9;
 
 // --- Improvement: operators chosen worst-first -------------------------------------------------------------------
 
+/// The paper's own way with a step, to be seen and compared: smoothing until it does not do, then the local cluster. No
+/// size adaptation: cells are remeshed only where their quality falls. The limit is AdaptOptions::floor, ten in the paper.
+struct PaperMethod {
+    LaplaceWeights weights = {.x1 = 1, .x2 = 1};
+    double much_less = 0.5;  // [limits] of R/r: "much less than ten", better cells are left alone
+    double about = 0.8;      // [limits] of R/r: "about ten or more", the three steps of Fig. 5; after the step, the cluster
+    double remeshed = 0.6;   // [limits] of R/r: what a cluster of one or two rings is to come to; a larger one, to `about`
+    int sweeps = 10;         // of smoothing, at most, each time
+};
+
 struct AdaptOptions {
     int relaxations = 1;              // sweeps that equalise volumes as the mesh moves
     double swap_above = 3.8;          // [-] R/r: worse cells are swapped away where that lowers the energy
@@ -109,6 +121,7 @@ struct AdaptOptions {
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
     bool whole_region = true;         // then the whole region is remeshed, the ladder's last rung
     std::uint64_t seed = 1;           // of the new points of a cluster
+    std::optional<PaperMethod> paper = {};  // in a step; nothing: our way
     const Watch* watch = nullptr;     // may end the work, which throws Interrupted then
 };
 
@@ -139,6 +152,9 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 [[nodiscard]] std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> cluster, const Snapshot& at,
                                                    const AdaptOptions& options = {});
 
+/// All tets of the region.
+[[nodiscard]] std::vector<Tet> whole_region(const Mesh& mesh, Region region);
+
 /// The cells and one more ring of cells of their region, that of the first.
 [[nodiscard]] std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells);
 
@@ -158,6 +174,10 @@ inline constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhe
 
 struct Zone;  // zone.h
 
+/// How the surroundings follow the bodies: by their displacement, spread; or not at all, as in the paper, where they are
+/// to be smoothed then.
+enum class Follow { spread, rest };
+
 struct MoveReport {
     bool arrived = false;  // else the mesh is as it was
     double fraction = 0;   // of the way that is safe for all cells
@@ -169,11 +189,11 @@ struct MoveReport {
 /// the mesh; it comes to hold the surroundings that the displacement reaches, and may hold more. Vertices that moved
 /// since `begin_motion` still count as moving.
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone);
+                    double t1, Zone& zone, Follow surroundings = Follow::spread);
 
 /// The same, and moves them there if every cell stays valid on the way; else tells how far it could go. Connectivity
 /// is unchanged.
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone);
+                         double t1, Zone& zone, Follow surroundings = Follow::spread);
 
 }  // namespace kropla

@@ -4,6 +4,7 @@ list(APPEND KROPLA_MESH_FILES
     adapt/propose.cpp
     adapt/optimise.cpp
     adapt/smooth.cpp
+    adapt/paper.cpp
     adapt/swap.cpp
     adapt/refine.cpp
     adapt/refusal.cpp

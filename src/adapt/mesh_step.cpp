@@ -1,5 +1,6 @@
 #include "adapt/mesh_step.h"
 
+#include "adapt/paper.h"
 #include "adapt/way.h"
 #include "base/checks.h"
 #include "generate/layers.h"
@@ -21,6 +22,8 @@ constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
 constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
 constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
 constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
+constexpr std::size_t refusals_until_all_anew = 3;  // by the paper's method
+constexpr double cut_out_of_trouble = 50;           // by the same, AdaptOptions::cut_out
 constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
 constexpr int rings_of_trouble = 2;          // around such a cell, at most
 constexpr double harder = 0.92;          // there, cells must be better by this than elsewhere
@@ -57,13 +60,14 @@ double worst_aspect_ratio_of(const Mesh& mesh, std::span<const Tet> cells) {
     return worst;
 }
 
-std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, const Snapshot& at_time) {
+/// Within so many target sizes of one of the places.
+std::vector<Tet> cells_near(const Mesh& mesh, std::span<const Vec3> places, double sizes, const Snapshot& at_time) {
     std::vector<Tet> cells;
     for (Tet t : mesh.tets.indices()) {
         if (!alive(mesh, t) || mesh.region[t] != surroundings) continue;
         const Vec3 x = centroid(mesh, t);
         if (std::ranges::any_of(places, [&](const Vec3& p) {
-                return distance(p, x) < trouble_in_sizes * target_size(at_time, p);
+                return distance(p, x) < sizes * target_size(at_time, p);
             }))
             cells.push_back(t);
     }
@@ -80,7 +84,8 @@ void look_again(const Mesh& mesh, const char* which) {
 }  // namespace
 
 MeshStep::MeshStep(Domain domain, Mesh mesh, double t, const AdaptOptions& options)
-    : domain_(std::move(domain)), options_(options), reference_(std::move(mesh)), before_(reference_),
+    : domain_(std::move(domain)), options_(options),
+      follow_(options.paper ? Follow::rest : Follow::spread), reference_(std::move(mesh)), before_(reference_),
       current_(reference_), time_(t), target_time_(t) {
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
         bodies_.push_back(vertices_of(reference_, region_of_body(body)));
@@ -116,24 +121,49 @@ const Changes& MeshStep::refine() {
     Changes& changes = statistics_.refined;
     heed(options_.watch);
     if (trouble_.empty()) return changes;
+    changes = options_.paper ? refine_by_paper() : refine_by_size();
+    note_replaced(changes);
+    copy_changed(before_, current_, replaced_.list(), changes.vertices);
+    follow(zone_, current_, replaced_);
+    refined_ = changes.cells;
+    return changes;
+}
+
+/// Near the places of trouble, at the step's beginning.
+Changes MeshStep::refine_by_size() {
     const Snapshot at_time = snapshot(domain_, time_);
     AdaptOptions options = options_;
     options.good_enough = std::max(3.5, harder * options_.good_enough);
-    auto cells = cells_near(current_, trouble_, at_time);
-    changes = adapt_to_size(current_, cells, at_time, options);
+    auto cells = cells_near(current_, trouble_, trouble_in_sizes, at_time);
+    Changes changes = adapt_to_size(current_, cells, at_time, options);
     cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());
     changes += improve(current_, cells, at_time, options);
     if (trouble_.size() > 1) {  // it was not enough the last time
         options.floor = std::min(options_.floor, trouble_floor);
         options.largest_ring = std::min(options_.largest_ring, rings_of_trouble);
         options.whole_region = false;
-        changes += repair(current_, cells_near(current_, trouble_, at_time), at_time, options);
+        changes += repair(current_, cells_near(current_, trouble_, trouble_in_sizes, at_time), at_time, options);
     }
-    note_replaced(changes);
-    copy_changed(before_, current_, replaced_.list(), changes.vertices);
-    follow(zone_, current_, replaced_);
-    refined_ = changes.cells;
     return changes;
+}
+
+/// The same by clusters, in a part of the domain that grows with the refusals; the whole region at last.
+Changes MeshStep::refine_by_paper() {
+    const Snapshot at_time = snapshot(domain_, time_);
+    AdaptOptions options = options_;
+    options.whole_region = false;
+    options.cut_out = cut_out_of_trouble;
+    if (trouble_.size() >= refusals_until_all_anew) {
+        const auto cavity = cluster_remesh(current_, whole_region(current_, surroundings), at_time, options);
+        if (cavity && cavity->worst_after <= about_the_limit(options_)) {
+            Changes changes;
+            carry_out(current_, *cavity, changes);
+            ++changes.global_remeshes;
+            return changes;
+        }
+    }
+    const auto cells = cells_near(current_, trouble_, static_cast<double>(trouble_.size()) * trouble_in_sizes, at_time);
+    return remesh_clusters(current_, cells, std::min(options_.floor, trouble_floor), at_time, options);
 }
 
 void MeshStep::move_boundary(double t) {
@@ -142,7 +172,7 @@ void MeshStep::move_boundary(double t) {
     stuck_ = turned_too_far();
     if (stuck_) return;
     statistics_.legs = 1;
-    place_boundary(current_, domain_, bodies_, time_, t, zone_);
+    place_boundary(current_, domain_, bodies_, time_, t, zone_, follow_);
     write_places(zone_, current_);
     note_moved();
 }
@@ -172,13 +202,13 @@ void MeshStep::move_in_legs() {
     for (int leg = 1; leg <= most_legs; ++leg) {
         heed(options_.watch);
         statistics_.legs = leg;
-        const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, target_time_, zone_);
+        const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, target_time_, zone_, follow_);
         const double share = report.arrived ? 1 : share_of_safe * report.fraction;
         const double next = report.arrived ? target_time_ : here + share * (target_time_ - here);
         if (!report.arrived) {
             stuck_ = refused(report.limiting, "keeps the bodies from arriving", here - time_);
             if (share < least_leg) return;
-            if (!kropla::move_boundary(current_, domain_, bodies_, here, next, zone_).arrived) return;
+            if (!kropla::move_boundary(current_, domain_, bodies_, here, next, zone_, follow_).arrived) return;
         }
         note_moved();
         if (!optimise_at(next)) return note_turned_over(here);
@@ -201,10 +231,10 @@ void MeshStep::note_turned_over(double reached) {
 /// Returns false if a cell is turned over.
 bool MeshStep::optimise_at(double t) {
     find_sizes(zone_, snapshot(domain_, t));
-    const auto moved = optimise_places(zone_, current_, options_);
-    if (!moved) return false;
-    statistics_.optimised.moved += *moved;
-    statistics_.optimised.smoothing_sweeps += options_.relaxations;
+    const auto changes = options_.paper ? smooth_places(zone_, current_, options_)
+                                        : optimise_places(zone_, current_, options_);
+    if (!changes) return false;
+    statistics_.optimised += *changes;
     write_places(zone_, current_);
     return true;
 }
@@ -316,7 +346,15 @@ void MeshStep::refuse() {
         trouble_.push_back(centroid(before_, reason->limiting));
 }
 
-Changes MeshStep::remesh(const AdaptOptions& options) {
+/// What smoothing leaves about the limit. No cell comes to be above it.
+Changes MeshStep::remesh_by_paper() {
+    AdaptOptions options = options_;
+    options.whole_region = false;  // what meets the floor is not worth it
+    return remesh_clusters(current_, cells_above(options_.swap_above), about_the_limit(options_),
+                           snapshot(domain_, target_time_), options);
+}
+
+Changes MeshStep::remesh_by_size(const AdaptOptions& options) {
     const Snapshot at_time = snapshot(domain_, target_time_);
     Changes changes = adapt_to_size(current_, zone_, at_time, options);
     changes += swap_for_energy(current_, cells_above(options.swap_above), options);
@@ -330,15 +368,15 @@ Changes MeshStep::remesh(const AdaptOptions& options) {
 const Changes& MeshStep::remesh() {
     copy_changed(before_, current_, {}, moved_);
     Changes& changes = statistics_.remeshed;
-    changes = remesh(options_);
-    if (worst_aspect_ratio_of(current_, changes.cells) > options_.floor) {
+    changes = options_.paper ? remesh_by_paper() : remesh_by_size(options_);
+    if (!options_.paper && worst_aspect_ratio_of(current_, changes.cells) > options_.floor) {
         // What passed the floor on its way stayed there: taken back, and done again without passing it.
         statistics_.redone = true;
         note_replaced(changes);
         copy_changed(current_, before_, replaced_.list(), moved_);
         AdaptOptions options = options_;
         options.passing = std::min(options.passing, options.floor);
-        changes = remesh(options);
+        changes = remesh_by_size(options);
     }
     note_replaced(changes);
     statistics_.cells_touched = static_cast<int>(zone_.cells.size());

@@ -72,7 +72,10 @@ private:
     [[nodiscard]] std::optional<Refusal> squeezed_prism() const;
     [[nodiscard]] std::optional<Refusal> turned_too_far() const;
     [[nodiscard]] std::optional<Refusal> turned_on_its_way() const;
-    Changes remesh(const AdaptOptions& options);  // the current mesh
+    Changes refine_by_size();
+    Changes refine_by_paper();
+    Changes remesh_by_size(const AdaptOptions& options);
+    Changes remesh_by_paper();
     void move_in_legs();
     void note_turned_over(double reached);
     bool optimise_at(double t);
@@ -85,6 +88,7 @@ private:
     std::vector<CorrectedStep> corrected_;   // per body: the last step that was told otherwise
     std::map<std::size_t, Told> told_;       // by bodies: this step
     AdaptOptions options_;
+    Follow follow_;                          // of the surroundings
     std::vector<std::vector<Vertex>> bodies_;  // the vertices of each body's cells
     std::vector<Tet> at_inner_shells_;         // cells of bodies that do not move rigidly: at the shells of inner layers
     Mesh reference_, before_, current_;

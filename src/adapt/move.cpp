@@ -233,7 +233,7 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<cons
 
 /// Gathers what is in reach of the bodies, and where the vertices are to go.
 void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
-                    std::span<const std::vector<Vertex>> bodies, Zone& zone) {
+                    std::span<const std::vector<Vertex>> bodies, Follow surroundings, Zone& zone) {
     reach_out(mesh, travels, bodies, zone);
     place_bodies(mesh, at_end, travels, bodies, zone);
     zone.vertices = zone.has.list();
@@ -246,6 +246,7 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
             return;
         }
         zone.moves[v] = Zone::by_itself;
+        if (surroundings == Follow::rest) return;
         zone.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, v));
     });
     list_cells(zone, mesh);
@@ -257,13 +258,13 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
 }  // namespace
 
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone) {
-    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, zone);
+                    double t1, Zone& zone, Follow surroundings) {
+    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, surroundings, zone);
 }
 
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone) {
-    place_boundary(mesh, domain, bodies, t0, t1, zone);
+                         double t1, Zone& zone, Follow surroundings) {
+    place_boundary(mesh, domain, bodies, t0, t1, zone, surroundings);
     const MoveReport report = check_way(zone, mesh, mesh.position, least_volume_kept);
     if (report.arrived) write_places(zone, mesh);
     return report;

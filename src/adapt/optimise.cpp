@@ -51,16 +51,6 @@ bool equalise_volumes(Zone& zone, const Mesh& mesh) {
     return true;
 }
 
-/// The vertices of cells worse than `above` that may move, each once, in order.
-std::vector<Vertex> vertices_of_worse(const Zone& zone, const Mesh& mesh, double above) {
-    IndexSet<Vertex> vertices;
-    for (Tet t : zone.cells)
-        if (zone.ratio[t] > above)
-            for (Vertex v : mesh.tets[t])
-                if (!freedom(zone, v).none()) vertices.insert(v);
-    return vertices.list();
-}
-
 void measure_ball(Zone& zone, const Mesh& mesh, Vertex v) {
     for (Tet t : zone.ball[v]) zone.ratio[t] = aspect_ratio(zone, mesh, t);
 }
@@ -131,7 +121,7 @@ void measure(Zone& zone, const Mesh& mesh) {
     });
 }
 
-std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
+std::optional<Changes> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
     std::vector<Vec3> moved;
     for (Vertex v : zone.vertices) moved.push_back(zone.place[v]);
     const auto take_back = [&] {
@@ -151,13 +141,14 @@ std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOpti
         take_back();
         return std::nullopt;
     }
-    int count = 0;
+    Changes changes;
+    changes.smoothing_sweeps = options.relaxations;
     for (int i = 0; i < most_passes; ++i) {
         const int more = optimise_worst(zone, mesh, spoilt, options.watch);
-        count += more;
+        changes.moved += more;
         if (more == 0) break;
     }
-    return count;
+    return changes;
 }
 
 Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {

@@ -338,6 +338,13 @@ std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, co
     return cluster_remesh(mesh, std::move(tets), at_time, options, budget);
 }
 
+std::vector<Tet> whole_region(const Mesh& mesh, Region region) {
+    std::vector<Tet> cells;
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t) && mesh.region[t] == region) cells.push_back(t);
+    return cells;
+}
+
 std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells) {
     Cluster cluster(cells);
     IndexSet<Vertex> seen;
@@ -353,13 +360,6 @@ std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells) {
 }
 
 namespace {
-
-std::vector<Tet> whole_region(const Mesh& mesh, Region region) {
-    std::vector<Tet> cells;
-    for (Tet t : mesh.tets.indices())
-        if (alive(mesh, t) && mesh.region[t] == region) cells.push_back(t);
-    return cells;
-}
 
 /// Climbs from one bad cell: its neighbourhood is remeshed, ring by ring, until its place is below the floor. Returns
 /// whether it is.

@@ -15,17 +15,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-Vec3 laplacian_place(const Mesh& mesh, Vertex v, const LaplaceWeights& weights) {
-    const Vec3 here = mesh.position[v];
-    const Freedom f = freedom(constraint(mesh, v, ball(mesh, v)));
-    if (f.none()) return here;
-    const auto neighbours = adjacent_vertices(mesh, v);
-
+Vec3 laplacian_place(std::span<const Vec3> neighbours, const LaplaceWeights& weights) {
     std::vector<double> reach;  // per neighbour: the sum of its distances to the others
     double sum = 0;
-    for (Vertex p : neighbours) {
+    for (const Vec3& p : neighbours) {
         double r = 0;
-        for (Vertex q : neighbours) r += distance(mesh.position[p], mesh.position[q]);
+        for (const Vec3& q : neighbours) r += distance(p, q);
         reach.push_back(r);
         sum += r;
     }
@@ -35,10 +30,19 @@ Vec3 laplacian_place(const Mesh& mesh, Vertex v, const LaplaceWeights& weights) 
     double total = 0;
     for (std::size_t i = 0; i < neighbours.size(); ++i) {
         const double w = weights.x1 + weights.x2 * reach[i] / mean;
-        place += w * mesh.position[neighbours[i]];
+        place += w * neighbours[i];
         total += w;
     }
-    return here + restricted(place / total - here, f);
+    return place / total;
+}
+
+Vec3 laplacian_place(const Mesh& mesh, Vertex v, const LaplaceWeights& weights) {
+    const Vec3 here = mesh.position[v];
+    const Freedom f = freedom(constraint(mesh, v, ball(mesh, v)));
+    if (f.none()) return here;
+    std::vector<Vec3> neighbours;
+    for (Vertex p : adjacent_vertices(mesh, v)) neighbours.push_back(mesh.position[p]);
+    return here + restricted(laplacian_place(neighbours, weights) - here, f);
 }
 
 void smooth_laplacian(Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights) {

@@ -209,6 +209,15 @@ Freedom freedom(const Zone& zone, Vertex v) {
     return {{(axes & 1) != 0, (axes & 2) != 0, (axes & 4) != 0}};
 }
 
+std::vector<Vertex> vertices_of_worse(const Zone& zone, const Mesh& mesh, double above) {
+    IndexSet<Vertex> vertices;
+    for (Tet t : zone.cells)
+        if (zone.ratio[t] > above)
+            for (Vertex v : mesh.tets[t])
+                if (!freedom(zone, v).none()) vertices.insert(v);
+    return vertices.list();
+}
+
 void write_places(const Zone& zone, Mesh& mesh) {
     for (Vertex v : zone.bodies) mesh.position[v] = zone.place[v];
     for (Vertex v : zone.vertices)

@@ -64,9 +64,12 @@ void star_of_ball(const Zone& zone, const Mesh& mesh, Vertex v, std::vector<Star
 /// Of a vertex, in a step: none if it does not move or is held.
 [[nodiscard]] Freedom freedom(const Zone& zone, Vertex v);
 
-/// Moves vertices: `place` and `ratio` change. `size` is set. Returns how many were moved for the worst cells; nothing,
-/// and nothing is moved, if a cell is turned over or flat at `place`.
-[[nodiscard]] std::optional<int> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
+/// The vertices of cells worse than `above` that may move, each once, in ascending order.
+[[nodiscard]] std::vector<Vertex> vertices_of_worse(const Zone& zone, const Mesh& mesh, double above);
+
+/// Moves vertices: `place` and `ratio` change. `size` is set. Returns the sweeps, and how many were moved for the worst
+/// cells; nothing, and nothing is moved, if a cell is turned over or flat at `place`.
+[[nodiscard]] std::optional<Changes> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
 /// Asks for the aspect ratios of all cells.
 void measure(Zone& zone, const Mesh& mesh);
 /// Do all cells keep a volume of at least `least` of what they have, all the way from `start` to `place`?

@@ -17,6 +17,7 @@ namespace kropla {
 namespace {
 
 constexpr int most_steps = 1'000'000;  // a frame per step would be terabytes
+constexpr double least_weight = 0.001;  // [-] of the larger of the paper's two; smaller ones mean the same, but for rounding
 constexpr double least_floor = 5;  // [-] R/r; what is better is good enough for AdaptOptions, and left alone
 
 Box read_box(const CaseTable& table) {
@@ -55,9 +56,26 @@ SizeField read_size(const CaseTable& table, const Box& box) {
     return size;
 }
 
-QualityFloor read_quality(const CaseTable& table) {
-    table.allow({"max_aspect_ratio"});
-    QualityFloor quality;
+/// The weights of the paper's Laplacian; only their ratio counts.
+LaplaceWeights read_weights(const CaseTable& table) {
+    const std::vector<double> x = table.numbers("weights", 2, "[X1, X2]");
+    const bool in_range = std::ranges::all_of(x, [](double w) { return w >= 0 && w <= 1; });
+    if (!in_range || std::max(x[0], x[1]) < least_weight)
+        table.refuse_value("weights", fmt::format("must be [X1, X2], each from 0 to 1, one of them at least {}", least_weight));
+    return {x[0], x[1]};
+}
+
+std::optional<PaperMethod> read_method(const CaseTable& table) {
+    const std::string method = table.has("method") ? table.text("method") : "kropla";
+    if (method == "paper") return table.has("weights") ? PaperMethod{.weights = read_weights(table)} : PaperMethod{};
+    if (method != "kropla") table.refuse_value("method", "must be \"kropla\" or \"paper\"");
+    if (table.has("weights")) table.refuse("weights", "are those of method = \"paper\"; the method here is \"kropla\"");
+    return std::nullopt;
+}
+
+QualityPlan read_quality(const CaseTable& table) {
+    table.allow({"max_aspect_ratio", "method", "weights"});
+    QualityPlan quality{.paper = read_method(table)};
     if (table.has("max_aspect_ratio")) quality.max_aspect_ratio = table.number("max_aspect_ratio");
     if (!(quality.max_aspect_ratio >= least_floor)) {
         table.refuse_value("max_aspect_ratio",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kropla/adapt/adapt.h>
 #include <kropla/domain/domain.h>
 #include <kropla/simulate/heat.h>
 
@@ -13,9 +14,10 @@
 
 namespace kropla {
 
-/// What no accepted step may exceed.
-struct QualityFloor {
+/// What no accepted step may exceed, and how the mesh is kept so.
+struct QualityPlan {
     double max_aspect_ratio = 10;  // [-] R/r, at least 5; 3 is a perfect tet
+    std::optional<PaperMethod> paper = {};  // the paper's own way; nothing: ours
 };
 
 struct TimePlan {
@@ -47,7 +49,7 @@ struct WrittenHeat {
 /// All that a run is told, SI units.
 struct Case {
     Domain domain;
-    QualityFloor quality;
+    QualityPlan quality;
     TimePlan time;
     std::optional<HeatOptions> heat;  // nothing: the mesh moves, nothing is simulated
     OutputPlan output;

@@ -52,6 +52,13 @@ std::string heat(const HeatOptions& it, const Domain& domain, const WrittenHeat&
     return text;
 }
 
+std::string quality(const QualityPlan& it) {
+    const std::string text = fmt::format("\n[quality]\nmax_aspect_ratio = {}\n", it.max_aspect_ratio);
+    if (!it.paper) return text + "method = \"kropla\"\n";
+    const auto& [x1, x2] = it.paper->weights;
+    return text + fmt::format("method = \"paper\"\nweights = [{}, {}]\n", x1, x2);
+}
+
 }  // namespace
 
 std::string to_toml(const Case& it) {
@@ -63,7 +70,7 @@ std::string to_toml(const Case& it) {
     const SizeField& size = it.domain.size;
     text +=
         fmt::format("\n[size]\nsurface = {}\ngrowth = {}\nfar = {}\n", size.surface, size.growth, size.far);
-    text += fmt::format("\n[quality]\nmax_aspect_ratio = {}\n", it.quality.max_aspect_ratio);
+    text += quality(it.quality);
     text += fmt::format("\n[time]\nend = {}\nsteps = {}\n", it.time.end, it.time.steps);
     if (it.heat) text += heat(*it.heat, it.domain, it.written_heat);
     text += fmt::format("\n[output]\nevery = {}\n\n[random]\nseed = {}\n", it.output.every, it.random.seed);

@@ -75,7 +75,7 @@ struct TakenBack {};
 }  // namespace
 
 AdaptOptions adapt_options(const Case& it, const Watch* watch) {
-    return {.floor = it.quality.max_aspect_ratio, .seed = it.random.seed, .watch = watch};
+    return {.floor = it.quality.max_aspect_ratio, .seed = it.random.seed, .paper = it.quality.paper, .watch = watch};
 }
 
 StepReport time_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {

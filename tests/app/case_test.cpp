@@ -54,6 +54,11 @@ void expect_same(const Case& a, const Case& b) {
     EXPECT_EQ(a.domain.size.growth, b.domain.size.growth);
     EXPECT_EQ(a.domain.size.far, b.domain.size.far);
     EXPECT_EQ(a.quality.max_aspect_ratio, b.quality.max_aspect_ratio);
+    ASSERT_EQ(a.quality.paper.has_value(), b.quality.paper.has_value());
+    if (a.quality.paper) {
+        EXPECT_EQ(a.quality.paper->weights.x1, b.quality.paper->weights.x1);
+        EXPECT_EQ(a.quality.paper->weights.x2, b.quality.paper->weights.x2);
+    }
     EXPECT_EQ(a.time.end, b.time.end);
     EXPECT_EQ(a.time.steps, b.time.steps);
     ASSERT_EQ(a.heat.has_value(), b.heat.has_value());
@@ -101,6 +106,28 @@ TEST(ReadCase, WhatIsLeftOutHasItsDefault) {
     EXPECT_EQ(it.random.seed, 1u);
     EXPECT_NE(to_toml(it).find("max_aspect_ratio = 10\n"), std::string::npos);
     EXPECT_NE(to_toml(it).find("every = 1\n"), std::string::npos);
+}
+
+TEST(ReadCase, TheMethodIsOursOrThePapers) {
+    const auto quality = [](const std::string& lines) {
+        return parse_case(replaced(full_case, "max_aspect_ratio = 9.5", lines), "case.toml").quality;
+    };
+    EXPECT_FALSE(quality("max_aspect_ratio = 9.5").paper);
+    EXPECT_FALSE(quality("method = \"kropla\"").paper);
+    ASSERT_TRUE(quality("method = \"paper\"").paper);
+    EXPECT_EQ(quality("method = \"paper\"").paper->weights.x1, PaperMethod{}.weights.x1);
+    const auto weighted = quality("method = \"paper\"\nweights = [0, 0.25]").paper;
+    ASSERT_TRUE(weighted);
+    EXPECT_EQ(weighted->weights.x1, 0);
+    EXPECT_EQ(weighted->weights.x2, 0.25);
+}
+
+TEST(WriteCase, KeepsTheMethod) {
+    for (const std::string method : {"method = \"kropla\"", "method = \"paper\"\nweights = [0.5, 1]"}) {
+        const Case it = parse_case(replaced(full_case, "max_aspect_ratio = 9.5", method), "case.toml");
+        EXPECT_NE(to_toml(it).find(method), std::string::npos);
+        expect_same(parse_case(to_toml(it), "written.toml"), it);
+    }
 }
 
 TEST(WriteCase, ReadsAsTheSameCaseAgain) {
