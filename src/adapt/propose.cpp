@@ -2,6 +2,7 @@
 
 #include <kropla/mesh/quality.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>

@@ -2,6 +2,7 @@
 
 #include <kropla/base/vec3.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 

@@ -4,6 +4,7 @@
 
 #include <petscksp.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <type_traits>

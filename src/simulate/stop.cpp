@@ -1,5 +1,7 @@
 #include "simulate/stop.h"
 
+#include <algorithm>
+
 namespace kropla {
 namespace {
 

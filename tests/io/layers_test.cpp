@@ -16,6 +16,8 @@
 #include <vtkWedge.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
+
 namespace kropla {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
 
+#include <algorithm>
 #include <limits>
 #include <vtkCell.h>
 #include <vtkCellData.h>
