@@ -258,13 +258,13 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
 }  // namespace
 
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone, Follow surroundings) {
-    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, surroundings, zone);
+                    double t1, Zone& zone, Follow follow) {
+    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, follow, zone);
 }
 
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone, Follow surroundings) {
-    place_boundary(mesh, domain, bodies, t0, t1, zone, surroundings);
+                         double t1, Zone& zone, Follow follow) {
+    place_boundary(mesh, domain, bodies, t0, t1, zone, follow);
     const MoveReport report = check_way(zone, mesh, mesh.position, least_volume_kept);
     if (report.arrived) write_places(zone, mesh);
     return report;

@@ -27,8 +27,7 @@ Vec3 laplacian_place(const Zone& zone, const Mesh& mesh, Vertex v, const Laplace
     for (Tet t : zone.ball[v])
         std::ranges::copy_if(mesh.tets[t], std::back_inserter(around), [v](Vertex w) { return w != v; });
     std::ranges::sort(around);
-    const auto repeated = std::ranges::unique(around);
-    around.erase(repeated.begin(), repeated.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
     std::vector<Vec3> places;
     for (Vertex w : around) places.push_back(zone.place[w]);
     return zone.place[v] + restricted(laplacian_place(places, weights) - zone.place[v], freedom(zone, v));
