@@ -50,7 +50,7 @@ TEST(StepRow, HasTheFiguresOfTheStep) {
     report.mesh.contents = {{.before_transfer = 4, .after = -5, .by_transfer = 1}};
     report.mesh.transfer = {{.limited = 6, .beyond = 7}};
     report.heat_from_bodies = {0.5, -7};
-    const StepRow row = step_row(3, report, {}, {.tets = 8}, it);
+    const StepRow row = step_row(3, report, {}, {.tets = 8, .worst = {}}, it);
     const auto value = [&](std::string_view column) {
         return std::ranges::find(row, column, &Figure::column)->value;
     };
