@@ -51,8 +51,7 @@ void write_vtk(const Mesh& mesh, const Array<Vertex, double>& heat) {  // free s
 }
 
 int main() try {
-    const Domain domain = two_spheres();
-    MovingMesh moving(domain, initial_mesh(domain, 1), 0);
+    MovingMesh moving(two_spheres(), initial_mesh(two_spheres(), 1), 0);
     const Mesh& mesh = moving.reference();
     Array<Vertex, double> heat(mesh.position.size());
     Array<Vertex, Vec3> flow(mesh.position.size(), {1, 0, 0});
@@ -68,10 +67,11 @@ int main() try {
     options.contents = {[&](const Mesh& now) { return integral(now, heat); }};  // looked at around each transfer
     while (moving.time() < 1 - 1e-9) {
         const Advanced step = advance(moving, fields, std::min(0.05, 1 - moving.time()), {}, options);  // no solver here
-        const auto range = std::ranges::minmax(dye);
+        double least = 1, most = 0;
+        for (Tet t : all_tets(mesh)) least = std::min(least, dye[t]), most = std::max(most, dye[t]);
         std::printf("%4.2f  worst R/r %5.2f  vertices kept %5.1f %%  heat lost %8.1e  dye %g ... %g\n", step.time,
                     summarise_quality(mesh).max_aspect_ratio, 100 * step.kept_vertices, step.contents[0].by_transfer / step.contents[0].after,
-                    range.min, range.max);
+                    least, most);
     }
     write_vtk(mesh, heat);
 } catch (const std::exception& error) {

@@ -55,7 +55,9 @@ Mesh cube_in_a_cylinder() {
     }
     std::vector<BoundaryFacet> boundary;
     for (const auto& [f, cells] : cells_at) {
-        const auto all_at = [&](double z) { return std::ranges::all_of(f, [&](Vertex v) { return vertices[v].z == z; }); };
+        const auto all_at = [&, &f = f](double z) {
+            return std::ranges::all_of(f, [&](Vertex v) { return vertices[v].z == z; });
+        };
         if (cells == 1) boundary.push_back({f, Patch(all_at(0) ? 4 : all_at(height * layers) ? 5 : 6)});
     }
     return make_mesh(vertices, tets, regions, boundary);
