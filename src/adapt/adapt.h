@@ -152,9 +152,6 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 [[nodiscard]] std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> cluster, const Snapshot& at,
                                                    const AdaptOptions& options = {});
 
-/// All tets of the region.
-[[nodiscard]] std::vector<Tet> whole_region(const Mesh& mesh, Region region);
-
 /// The cells and one more ring of cells of their region, that of the first.
 [[nodiscard]] std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells);
 

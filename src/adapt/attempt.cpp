@@ -22,18 +22,24 @@ MeshStep& AttemptRight::step() const {
     return *step_;
 }
 
+namespace {
+
+/// Does a part of the step. What an exception leaves of it is not looked at again.
 template <class Deed>
-void AttemptRight::perform(Deed deed) {
+void perform(const AttemptRight& right, Deed deed) {
+    MeshStep& step = right.step();
     try {
-        deed(step());
+        deed(step);
     } catch (...) {
-        if (step_) step_->drop();
+        step.drop();
         throw;
     }
 }
 
+}  // namespace
+
 Attempt::Attempt(MovingMesh& moving) : right_(moving.step_) {
-    right_.perform([](MeshStep& step) {
+    perform(right_, [](MeshStep& step) {
         step.begin_step();
         step.refine();
     });
@@ -43,7 +49,7 @@ const Mesh& Attempt::before() const { return right_.step().before(); }
 const Changes& Attempt::refined() const { return right_.step().statistics().refined; }
 
 MovedAttempt::MovedAttempt(Attempt&& attempt, double end) : right_(std::move(attempt.right_)) {
-    right_.perform([end](MeshStep& step) {
+    perform(right_, [end](MeshStep& step) {
         if (!(end > step.time())) throw std::logic_error("a step ends after it begins");
         step.move_boundary(end);
         step.optimise();
@@ -55,7 +61,7 @@ const Mesh& MovedAttempt::before() const { return right_.step().before(); }
 const Mesh& MovedAttempt::current() const { return right_.step().current(); }
 std::optional<Refusal> MovedAttempt::refusal() const { return right_.step().refusal(); }
 void MovedAttempt::move_again(std::span<const BodyPlace> places) {
-    right_.perform([places](MeshStep& step) {
+    perform(right_, [places](MeshStep& step) {
         step.correct(places);
         step.move_boundary(step.target_time());
         step.optimise();
@@ -63,7 +69,7 @@ void MovedAttempt::move_again(std::span<const BodyPlace> places) {
 }
 
 RemeshedAttempt::RemeshedAttempt(MovedAttempt&& attempt) : right_(std::move(attempt.right_)) {
-    right_.perform([](MeshStep& step) {
+    perform(right_, [](MeshStep& step) {
         if (step.refusal()) throw std::logic_error("a step that is to be refused is accepted");
         step.remesh();
     });
@@ -84,7 +90,7 @@ RemeshedAttempt remesh(MovedAttempt&& attempt) { return RemeshedAttempt(std::mov
 
 StepStatistics accept(RemeshedAttempt&& attempt) {
     RemeshedAttempt ended = std::move(attempt);
-    ended.right_.perform([](MeshStep& step) { step.accept(); });
+    perform(ended.right_, [](MeshStep& step) { step.accept(); });
     return ended.right_.step().statistics();
 }
 

@@ -28,9 +28,6 @@ public:
     ~AttemptRight();
 
     [[nodiscard]] MeshStep& step() const;  ///< throws std::logic_error if it was handed on
-    /// Does a part of the step. What an exception leaves of it is not looked at again.
-    template <class Deed>
-    void perform(Deed deed);
 
 private:
     std::shared_ptr<MeshStep> step_;

@@ -22,16 +22,18 @@ std::string region_words(Region region) { return "region " + std::to_string(regi
 
 void check_regions(const Domain& domain, const Mesh& mesh) {
     std::vector<bool> has_cells(domain.bodies.size() + 1, false);
-    const auto count = [&](Region region, const auto& what) {
+    const auto check = [&](Region region, const auto& what) {
         if (region.value < 0 || static_cast<std::size_t>(region.value) >= has_cells.size())
             throw DomainError(what() + " is of " + region_words(region) + ", but the domain has " +
                               std::to_string(domain.bodies.size()) + " bodies");
-        has_cells[static_cast<std::size_t>(region.value)] = true;
     };
-    for (Tet t : all_tets(mesh))
-        count(mesh.region[t],
+    for (Tet t : all_tets(mesh)) {
+        check(mesh.region[t],
               [&] { return "cell " + std::to_string(t.value) + " at " + place_words(centroid(mesh, t)); });
-    for (const PrismLayer& layer : mesh.layers) count(layer.region, [] { return std::string("a layer"); });
+        has_cells[static_cast<std::size_t>(mesh.region[t].value)] = true;
+    }
+    for (const PrismLayer& layer : mesh.layers)
+        for (Region region : {layer.region, layer.body}) check(region, [] { return std::string("a layer"); });
     for (std::size_t body = 0; body < domain.bodies.size(); ++body)
         if (!has_cells[body + 1])
             throw DomainError(named(domain.bodies[body]) + " has no cells: the mesh has none of " +

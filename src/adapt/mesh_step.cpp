@@ -154,7 +154,7 @@ Changes MeshStep::refine_by_paper() {
     options.whole_region = false;
     options.cut_out = cut_out_of_trouble;
     if (trouble_.size() >= refusals_until_all_anew) {
-        const auto cavity = cluster_remesh(current_, whole_region(current_, surroundings), at_time, options);
+        const auto cavity = cluster_remesh(current_, all_tets(current_, surroundings), at_time, options);
         if (cavity && cavity->worst_after <= about_the_limit(options_)) {
             Changes changes;
             carry_out(current_, *cavity, changes);

@@ -338,13 +338,6 @@ std::optional<Cavity> cluster_remesh(const Mesh& mesh, std::vector<Tet> tets, co
     return cluster_remesh(mesh, std::move(tets), at_time, options, budget);
 }
 
-std::vector<Tet> whole_region(const Mesh& mesh, Region region) {
-    std::vector<Tet> cells;
-    for (Tet t : mesh.tets.indices())
-        if (alive(mesh, t) && mesh.region[t] == region) cells.push_back(t);
-    return cells;
-}
-
 std::vector<Tet> with_ring(const Mesh& mesh, std::span<const Tet> cells) {
     Cluster cluster(cells);
     IndexSet<Vertex> seen;
@@ -385,7 +378,7 @@ void remesh_regions(Mesh& mesh, const std::vector<Tet>& bad, const Snapshot& at_
     for (Tet t : bad) {
         if (!alive(mesh, t) || !(aspect_ratio(mesh, t) > options.floor)) continue;
         if (!tried.insert(mesh.region[t]).second) continue;
-        const auto cavity = cluster_remesh(mesh, whole_region(mesh, mesh.region[t]), at_time, options);
+        const auto cavity = cluster_remesh(mesh, all_tets(mesh, mesh.region[t]), at_time, options);
         if (!cavity) continue;
         carry_out(mesh, *cavity, changes);
         ++changes.global_remeshes;

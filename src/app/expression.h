@@ -2,7 +2,6 @@
 
 #include <kropla/base/vec3.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 

@@ -275,7 +275,7 @@ std::vector<std::string> foresee(const Case& it, const Watch* watch) {
     check_sizes(it, all.limit, watch);
     if (const std::string thin = thin_box(domain); !thin.empty()) warnings.push_back(thin);
     if (domain.size.growth > steepest_growth)
-        warnings.push_back(fmt::format("size.growth = {} counts as {}: no good tetrahedra grow faster",
+        warnings.push_back(fmt::format("size.growth = {} counts as {}: steeper sizes leave cells above the limit",
                                        domain.size.growth, steepest_growth));
     for (const std::size_t body : all.seen.too_fast)
         warnings.push_back(

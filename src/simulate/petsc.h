@@ -4,7 +4,6 @@
 
 #include <petscksp.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <type_traits>

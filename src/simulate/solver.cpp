@@ -23,7 +23,6 @@ constexpr int most_iterations = 2000;      // of all passes: far more than any s
 constexpr int restart = 60;                // of GMRES: as many iterations as a solve may take
 constexpr double pass_margin = 0.1;        // [-] what a pass aims at, in tolerances
 constexpr double deepest_pass = 1e-13;     // [-] of the residual, beyond what a Krylov method sees is its own rounding
-constexpr double near_enough = 100;        // [tolerances] where corrections get nowhere any more
 constexpr double stagnation = 0.5;         // [-] of the error and of the residual: what leaves more got nowhere
 constexpr double regular_shift = 1e-12;    // [-] of the diagonal, to precondition: far above rounding, below all that
                                            //   contrasts of 1e8 make small, but for constants
@@ -365,10 +364,13 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
     Residual left = residual(ranks, system, x);
     if (!choice.potential) balance(ranks, system, x, left);
     Krylov krylov(ranks, system, choice);
-    double corrected = INFINITY;  // [-] of the largest entry, by the last pass
+    double corrected = INFINITY;     // [-] of the largest entry, by the last pass
+    bool as_deep_as_can_be = false;  // a pass got nowhere: the norm that it aims at does not see what is left
     while (left.backward_error > wanted) {
         const Residual before = left;
-        const double aim = std::clamp(pass_margin * wanted / before.backward_error, deepest_pass, pass_margin);
+        const double aim = as_deep_as_can_be ? deepest_pass
+                                             : std::clamp(pass_margin * wanted / before.backward_error, deepest_pass,
+                                                          pass_margin);
         const std::vector<double> correction = krylov.correct(before.rest, aim);
         heed(ranks);
         for (std::size_t r = 0; r < correction.size(); ++r) x.add(r, correction[r]);
@@ -383,8 +385,8 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
             if (corrected < rounding) break;
         }
         if (left.backward_error <= wanted || !(stuck(before, left) || krylov.out_of_iterations())) continue;
-        if (left.backward_error > near_enough * wanted) give_up(choice, krylov, left.backward_error);
-        break;
+        if (as_deep_as_can_be || krylov.out_of_iterations()) give_up(choice, krylov, left.backward_error);
+        as_deep_as_can_be = true;
     }
     std::vector<double> value(x.high.size());
     for (std::size_t r = 0; r < value.size(); ++r) value[r] = x.value(r);

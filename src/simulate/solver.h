@@ -34,8 +34,7 @@ struct Solution {
 /// is within the tolerance, or what rounding leaves of a row's sum if that is more: x then solves a system whose
 /// sums, right-hand side and couplings differ by that share. For an M-matrix so small a change makes x differ
 /// by about as small a share of its largest entry. It is done, too, when a correction is lost in the rounding of
-/// that entry: rows that hold next to nothing may then still differ, which no unknown can show; and within a hundred
-/// tolerances, when corrections get nowhere any more: `error` tells.
+/// that entry: rows that hold next to nothing may then still differ, which no unknown can show.
 ///
 /// A tolerance in PETSc's options (-ksp_rtol, -ksp_atol, of the residual of the first guess) holds instead.
 /// Throws SolverError with PETSc's reason, the iterations and the backward error if it does not converge,

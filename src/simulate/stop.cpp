@@ -1,7 +1,5 @@
 #include "simulate/stop.h"
 
-#include <algorithm>
-
 namespace kropla {
 namespace {
 
