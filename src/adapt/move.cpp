@@ -5,7 +5,7 @@
 // squeezed and torn; vertices on the faces of the box slide along; and a body reaches no farther than a few
 // of its own sizes.
 
-#include "adapt/for_all.h"
+#include "base/for_all.h"
 #include "adapt/zone.h"
 #include "domain/layer_room.h"
 #include "domain/triangle_tree.h"

@@ -7,7 +7,7 @@
 // tessellation of [Chen, Holst 2011], "Efficient mesh optimization schemes based on Optimal Delaunay
 // Triangulations".
 
-#include "adapt/for_all.h"
+#include "base/for_all.h"
 #include "adapt/zone.h"
 
 #include "base/tetrahedron.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <kropla/adapt/adapt.h>
-#include "adapt/for_all.h"
+#include "base/for_all.h"
 #include "mesh/index_set.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Splitting and collapsing edges towards the target size. The new vertex of a split goes to the best place
 // inside the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
 
-#include "adapt/for_all.h"
+#include "base/for_all.h"
 #include "adapt/propose.h"
 #include "adapt/zone.h"
 #include "base/tetrahedron.h"

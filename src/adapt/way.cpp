@@ -4,7 +4,7 @@
 
 #include "adapt/way.h"
 
-#include "adapt/for_all.h"
+#include "base/for_all.h"
 #include <kropla/mesh/prisms.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "adapt/zone.h"
 
-#include "adapt/for_all.h"
+#include "base/for_all.h"
 #include "base/tetrahedron.h"
 #include <kropla/mesh/cells.h>
 

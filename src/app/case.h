@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kropla {
@@ -41,9 +42,11 @@ struct WrittenBody {
     std::array<std::string, 3> motion;  // all empty: at rest
     std::string angle, axis;            // of the motion; both empty: it does not turn
 };
+using WrittenKeys = std::vector<std::pair<std::string, std::string>>;  // each key and its value
 struct WrittenHeat {
-    std::vector<std::string> sources;  // per region
-    std::array<std::string, 6> faces;  // per face of the box
+    std::vector<WrittenKeys> regions;   // per region
+    std::vector<WrittenKeys> surfaces;  // per body
+    std::array<std::string, 6> faces;   // per face of the box
 };
 
 /// All that a run is told, SI units.

@@ -1,30 +1,134 @@
+// [heat]: materials, sources, and what happens at surfaces and faces.
 #include "app/case_heat.h"
 
+#include "app/case_property.h"
 #include "simulate/step_mean.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace kropla {
 namespace {
+
+/// A place that is special to no formula: expressions are tried there.
+Vec3 probe_of(const Box& box) {
+    const Vec3 span = box.max - box.min;
+    return box.min + Vec3{0.37 * span.x, 0.41 * span.y, 0.43 * span.z};
+}
 
 Quantity quantity(const Formula& formula) {
     if (!formula.written.starts_with('"')) return Constant{formula.value(0)};
     return [f = formula.value](const Vec3& place, double t) { return f(t, place); };
 }
 
-HeatRegion read_region(const CaseTable& table, const Vec3& probe, std::string& written_source) {
-    table.allow({"conductivity", "density", "specific_heat", "initial", "source"});
+/// A table of [heat] while it is read, and how what was read is written.
+class HeatTable {
+public:
+    HeatTable(const CaseTable& table, const Vec3& probe, WrittenKeys& written)
+        : table_(table), probe_(probe), written_(written) {}
+
+    [[nodiscard]] bool has(std::string_view key) const { return table_.has(key); }
+    [[nodiscard]] const CaseTable& table() const { return table_; }
+
+    /// Empty if the key is not there.
+    Quantity quantity_of(std::string_view key) {
+        if (!table_.has(key)) return {};
+        const Formula formula = table_.formula(key, Variables::time_and_place, probe_);
+        written_.emplace_back(key, formula.written);
+        return quantity(formula);
+    }
+    double number(std::string_view key) {
+        const double value = table_.number(key);
+        written_.emplace_back(key, toml_number(value));
+        return value;
+    }
+    Property property(std::string_view key, double usual_temperature) {
+        const WrittenProperty read = read_property(table_, key, usual_temperature);
+        written_.emplace_back(key, read.written);
+        return read.property;
+    }
+    void note(std::string_view key, std::string written) { written_.emplace_back(key, std::move(written)); }
+
+    HeatExchange exchange() {
+        HeatExchange exchange{quantity_of("coefficient"), quantity_of("emissivity"), {}};
+        const bool is_some = exchange.coefficient || exchange.emissivity;
+        if (is_some && !table_.has("ambient"))
+            table_.refuse("ambient", "is missing; it must be the temperature [K] with which heat is exchanged");
+        if (!is_some && table_.has("ambient"))
+            table_.refuse("ambient", "needs a coefficient [W/(m^2 K)] or an emissivity beside it");
+        for (const auto& [key, quantity, most] : {std::tuple{"coefficient", &exchange.coefficient, 0.0},
+                                                  std::tuple{"emissivity", &exchange.emissivity, 1.0}}) {
+            if (!*quantity) continue;
+            const double value = (*quantity)(probe_, 0);
+            if (value < 0 || (most > 0 && value > most))
+                table_.refuse_value(key, most > 0 ? "must be from 0 to 1" : "must be at least 0");
+        }
+        exchange.ambient = quantity_of("ambient");
+        return exchange;
+    }
+
+    /// A distribution, and the whole of it.
+    std::pair<Quantity, Quantity> flux_and_power(std::string_view key) {
+        Quantity flux = quantity_of(key), power = quantity_of("power");
+        return {std::move(flux), std::move(power)};
+    }
+
+private:
+    const CaseTable& table_;
+    Vec3 probe_;
+    WrittenKeys& written_;
+};
+
+HeatStart read_start(HeatTable& table) {
+    if (table.table().holds_text("initial") && table.table().text("initial") == "steady") {
+        table.note("initial", "\"steady\"");
+        HeatStart start;
+        start.steady = true;
+        return start;
+    }
+    if (table.table().holds_text("initial")) return table.quantity_of("initial");
+    return table.number("initial");
+}
+
+void read_latent_heat(HeatTable& table, HeatMaterial& material) {
+    const CaseTable& given = table.table();
+    const bool any = given.has("latent_heat") || given.has("solidus") || given.has("liquidus");
+    if (!any) return;
+    if (given.number("latent_heat") < 0) given.refuse_value("latent_heat", "must be at least 0");
+    material.latent_heat = table.number("latent_heat");
+    material.solidus = table.number("solidus");
+    material.liquidus = table.number("liquidus");
+    if (!(material.solidus < material.liquidus))
+        given.refuse_value("solidus", fmt::format("must be below liquidus, {}", toml_number(material.liquidus)));
+}
+
+HeatRegion read_region(HeatTable table) {
+    const CaseTable& given = table.table();
+    given.allow({"conductivity", "density", "specific_heat", "latent_heat", "solidus", "liquidus", "initial", "source",
+                 "power", "held"});
     HeatRegion region;
-    region.material = {table.positive("conductivity"), table.positive("density"),
-                       table.positive("specific_heat")};
-    region.initial = table.number("initial");
-    if (!table.has("source")) return region;
-    const Formula source = table.formula("source", Variables::time_and_place, probe);
-    written_source = source.written;
-    region.source = quantity(source);
+    if (given.has("held")) region.held = table.number("held");
+    else if (!given.has("initial"))
+        given.refuse("initial", "is missing; it must be a number [K], an expression of x, y, z, \"steady\", or instead "
+                                "`held` a temperature");
+    if (given.has("initial")) region.initial = read_start(table);
+    const double usual = region.held ? *region.held : region.initial.value > 0 ? region.initial.value : 300;
+    region.material.conductivity = table.property("conductivity", usual);
+    region.material.density = table.property("density", usual);
+    region.material.specific_heat = table.property("specific_heat", usual);
+    read_latent_heat(table, region.material);
+    std::tie(region.source, region.power) = table.flux_and_power("source");
     return region;
+}
+
+HeatSurface read_surface(HeatTable table) {
+    table.table().allow({"flux", "power", "coefficient", "emissivity", "ambient"});
+    HeatSurface surface;
+    std::tie(surface.flux, surface.power) = table.flux_and_power("flux");
+    surface.exchange = table.exchange();
+    return surface;
 }
 
 HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& probe, std::string& written) {
@@ -33,23 +137,33 @@ HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
         return {};
     }
     if (!faces.holds_table(key)) {
-        faces.refuse_value(key, "must be \"insulated\", { value = ... } [K] or { flux = ... } [W/m^2]");
+        faces.refuse_value(key, "must be \"insulated\", { value = ... } [K], { flux = ... } [W/m^2] or { coefficient = ... "
+                                "[W/(m^2 K)], emissivity = ..., ambient = ... [K] }");
     }
-    const CaseTable face = faces.table(key);
-    face.allow({"value", "flux"});
-    if (face.has("value") == face.has("flux"))
-        faces.refuse(key, "must have either a value [K] or a flux [W/m^2]");
-    const bool is_value = face.has("value");
-    const char* name = is_value ? "value" : "flux";
-    const Formula formula = face.formula(name, Variables::time_and_place, probe);
-    written = fmt::format("{{ {} = {} }}", name, formula.written);
-    return {is_value ? HeatFace::Kind::value : HeatFace::Kind::flux, quantity(formula)};
-}
-
-/// A place that is special to no formula: expressions are tried there.
-Vec3 probe_of(const Box& box) {
-    const Vec3 span = box.max - box.min;
-    return box.min + Vec3{0.37 * span.x, 0.41 * span.y, 0.43 * span.z};
+    const CaseTable table = faces.table(key);
+    WrittenKeys keys;
+    HeatTable face(table, probe, keys);
+    table.allow({"value", "flux", "power", "coefficient", "emissivity", "ambient"});
+    const bool value = table.has("value"), flux = table.has("flux") || table.has("power");
+    const bool exchange = table.has("coefficient") || table.has("emissivity") || table.has("ambient");
+    if (int{value} + int{flux} + int{exchange} != 1)
+        faces.refuse(key, "must have one condition: a value [K], a flux [W/m^2] (or its power [W]), or an exchange of heat "
+                          "by a coefficient or an emissivity with an ambient");
+    HeatFace read;
+    if (value) {
+        read.kind = HeatFace::Kind::value;
+        read.quantity = face.quantity_of("value");
+    } else if (flux) {
+        read.kind = HeatFace::Kind::flux;
+        std::tie(read.quantity, read.power) = face.flux_and_power("flux");
+    } else {
+        read.kind = HeatFace::Kind::exchange;
+        read.exchange = face.exchange();
+    }
+    std::vector<std::string> parts;
+    for (const auto& [name, text] : keys) parts.push_back(fmt::format("{} = {}", name, text));
+    written = fmt::format("{{ {} }}", fmt::join(parts, ", "));
+    return read;
 }
 
 }  // namespace
@@ -59,7 +173,7 @@ std::string region_name(const Domain& domain, std::size_t region) {
 }
 
 HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat& written) {
-    table.allow({"region", "face"});
+    table.allow({"region", "surface", "face"});
     const CaseTable regions = table.table("region");
     std::vector<std::string> names;
     for (std::size_t r = 0; r <= domain.bodies.size(); ++r) names.push_back(region_name(domain, r));
@@ -67,20 +181,37 @@ HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat&
 
     const Vec3 probe = probe_of(domain.box);
     HeatOptions heat;
-    written.sources.assign(names.size(), "");
+    written.regions.assign(names.size(), {});
     for (std::size_t r = 0; r < names.size(); ++r) {
-        heat.regions.push_back(read_region(regions.table(names[r]), probe, written.sources[r]));
+        const CaseTable region = regions.table(names[r]);
+        heat.regions.push_back(read_region(HeatTable(region, probe, written.regions[r])));
         heat.regions[r].name = names[r];
         heat.regions[r].carried = r == 0 ? Carried::at_rest : Carried::with_mesh;
     }
 
-    written.faces.fill("\"insulated\"");
-    if (!table.has("face")) return heat;
-    const CaseTable faces = table.table("face");
-    faces.allow(std::vector<std::string>(face_keys.begin(), face_keys.end()));
-    for (std::size_t f = 0; f < face_keys.size(); ++f) {
-        if (faces.has(face_keys[f])) heat.faces[f] = read_face(faces, face_keys[f], probe, written.faces[f]);
+    heat.surfaces.resize(domain.bodies.size());
+    written.surfaces.assign(domain.bodies.size(), {});
+    if (table.has("surface")) {
+        const CaseTable surfaces = table.table("surface");
+        surfaces.allow(std::vector<std::string>(names.begin() + 1, names.end()));
+        for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
+            if (!surfaces.has(names[body + 1])) continue;
+            const CaseTable surface = surfaces.table(names[body + 1]);
+            heat.surfaces[body] = read_surface(HeatTable(surface, probe, written.surfaces[body]));
+        }
     }
+
+    written.faces.fill("\"insulated\"");
+    if (table.has("face")) {
+        const CaseTable faces = table.table("face");
+        faces.allow(std::vector<std::string>(face_keys.begin(), face_keys.end()));
+        for (std::size_t f = 0; f < face_keys.size(); ++f)
+            if (faces.has(face_keys[f])) heat.faces[f] = read_face(faces, face_keys[f], probe, written.faces[f]);
+    }
+    if (!has_steady_state(heat))
+        regions.table("surroundings")
+            .refuse("initial", "there is no steady state, or more than one, as nothing says how warm it is: give a region "
+                               "a temperature, or a face a value or an exchange of heat");
     return heat;
 }
 

@@ -101,6 +101,13 @@ std::vector<double> CaseTable::numbers(std::string_view key, std::size_t count,
     return values;
 }
 
+std::vector<double> CaseTable::all_numbers(std::string_view key, std::string_view meaning) const {
+    const std::string must = fmt::format("must be finite numbers in brackets: {}", meaning);
+    const toml::array* array = node(key, must).as_array();
+    if (array == nullptr) refuse_value(key, must);
+    return numbers(key, array->size(), meaning);
+}
+
 double CaseTable::length(std::string_view key) const {
     const double value = positive(key);
     if (!is_length(value)) refuse_value(key, fmt::format("must be from {:g} to {:g} m", least_length, most_length));
@@ -137,7 +144,7 @@ Formula CaseTable::formula(std::string_view key, const toml::node& value, std::s
     if (!text) refuse_value(key, must);
     Expression expression = compiled(key, *text, variables);
     const double at_start = expression(0, probe);
-    if (!std::isfinite(at_start)) {
+    if (variables != Variables::temperature && !std::isfinite(at_start)) {
         refuse(key, fmt::format("must be finite, but {} is {} at t = 0", toml_text(*text),
                                 std::isnan(at_start) ? "not a number" : "infinite"));
     }

@@ -57,7 +57,9 @@ public:
     /// As many finite numbers; `meaning` names them in a refusal.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count,
                                               std::string_view meaning) const;
-    /// Finite at t = 0 and `probe`.
+    /// As many as there are.
+    [[nodiscard]] std::vector<double> all_numbers(std::string_view key, std::string_view meaning) const;
+    /// Finite at t = 0 and `probe`; of the temperature, anything.
     [[nodiscard]] Formula formula(std::string_view key, Variables variables, const Vec3& probe = {}) const;
 
     /// As many of them in brackets; `meaning` names them in a refusal.

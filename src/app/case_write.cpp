@@ -34,21 +34,21 @@ std::string body(const Body& it, const WrittenBody& written) {
     return text;
 }
 
-std::string heat(const HeatOptions& it, const Domain& domain, const WrittenHeat& written) {
+std::string keys(const WrittenKeys& written) {
     std::string text;
-    for (std::size_t r = 0; r < it.regions.size(); ++r) {
-        const HeatRegion& region = it.regions[r];
-        const HeatMaterial& material = region.material;
-        text += fmt::format(
-            "\n[heat.region.{}]\nconductivity = {}\ndensity = {}\nspecific_heat = {}\ninitial = {}\n",
-            toml_text(region_name(domain, r)), material.conductivity, material.density,
-            material.specific_heat, region.initial);
-        if (!written.sources[r].empty()) text += fmt::format("source = {}\n", written.sources[r]);
-    }
+    for (const auto& [key, value] : written) text += fmt::format("{} = {}\n", key, value);
+    return text;
+}
+
+std::string heat(const Domain& domain, const WrittenHeat& written) {
+    std::string text;
+    const auto add = [&](const char* kind, std::size_t region, const WrittenKeys& of) {
+        if (!of.empty()) text += fmt::format("\n[heat.{}.{}]\n{}", kind, toml_text(region_name(domain, region)), keys(of));
+    };
+    for (std::size_t r = 0; r < written.regions.size(); ++r) add("region", r, written.regions[r]);
+    for (std::size_t body = 0; body < written.surfaces.size(); ++body) add("surface", body + 1, written.surfaces[body]);
     text += "\n[heat.face]\n";
-    for (std::size_t f = 0; f < face_keys.size(); ++f) {
-        text += fmt::format("{} = {}\n", face_keys[f], written.faces[f]);
-    }
+    for (std::size_t f = 0; f < face_keys.size(); ++f) text += fmt::format("{} = {}\n", face_keys[f], written.faces[f]);
     return text;
 }
 
@@ -72,7 +72,7 @@ std::string to_toml(const Case& it) {
         fmt::format("\n[size]\nsurface = {}\ngrowth = {}\nfar = {}\n", size.surface, size.growth, size.far);
     text += quality(it.quality);
     text += fmt::format("\n[time]\nend = {}\nsteps = {}\n", it.time.end, it.time.steps);
-    if (it.heat) text += heat(*it.heat, it.domain, it.written_heat);
+    if (it.heat) text += heat(it.domain, it.written_heat);
     text += fmt::format("\n[output]\nevery = {}\n\n[random]\nseed = {}\n", it.output.every, it.random.seed);
     return text;
 }

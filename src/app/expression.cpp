@@ -25,6 +25,14 @@ std::size_t assignment(const std::string& text) {
     return 0;
 }
 
+const char* names_of(Variables variables) {
+    switch (variables) {
+        case Variables::time: return "t";
+        case Variables::temperature: return "T";
+        default: return "t, x, y, z";
+    }
+}
+
 std::string fault(const mu::ParserError& error, std::size_t length, Variables variables) {
     const bool at_end = error.GetPos() < 0 || static_cast<std::size_t>(error.GetPos()) >= length;
     const std::string place = at_end ? "at the end" : fmt::format("at character {}", error.GetPos() + 1);
@@ -32,7 +40,7 @@ std::string fault(const mu::ParserError& error, std::size_t length, Variables va
         case mu::ecUNASSIGNABLE_TOKEN:
             return fmt::format(
                 "\"{}\" {} is not known; known are {}, pi and functions such as sin, exp, sqrt",
-                error.GetToken(), place, variables == Variables::time ? "t" : "t, x, y, z");
+                error.GetToken(), place, names_of(variables));
         case mu::ecUNEXPECTED_EOF: return "something is missing at the end";
         case mu::ecEMPTY_EXPRESSION: return "an expression is missing";
         case mu::ecMISSING_PARENS: return fmt::format("\")\" is missing {}", place);
@@ -70,7 +78,7 @@ struct Expression::Compiled {
 
     void compile() {
         parser.DefineConst("pi", std::numbers::pi);
-        parser.DefineVar("t", &t);
+        parser.DefineVar(variables == Variables::temperature ? "T" : "t", &t);
         if (variables == Variables::time_and_place) {
             parser.DefineVar("x", &place.x);
             parser.DefineVar("y", &place.y);

@@ -7,8 +7,9 @@
 
 namespace kropla {
 
-/// What an expression may speak of: the time `t` [s] alone, or the place `x`, `y`, `z` [m] as well.
-enum class Variables { time, time_and_place };
+/// What an expression may speak of: the time `t` [s] alone, or the place `x`, `y`, `z` [m] as well; or the temperature
+/// `T` [K] alone, which then stands for the time in every question.
+enum class Variables { time, time_and_place, temperature };
 
 /// A formula that the user wrote, such as "0.0003*sin(4*pi*t/0.01)": compiled once, evaluated often.
 /// Operators and functions are muParser's (+ - * / ^, comparisons, a ? b : c, sin, cos, exp, ln, sqrt, min,

@@ -65,9 +65,10 @@ std::string progress_line(const ProgressRow& row) {
     const std::string steps = fmt::format("{}", row.steps);
     const std::string heat = row.heat_seconds ? fmt::format("  heat {:5.2f} s", *row.heat_seconds) : "";
     return fmt::format(
-        "step {:>{}}/{}  t {:>7}  worst R/r {:4.1f}  {:<8}  touched {:4.1f} %  mesh {:5.2f} s{}  left {}",
+        "step {:>{}}/{}  t {:>7}  worst R/r {:4.1f}  {:<8}  touched {:4.1f} %  mesh {:5.2f} s{}{}  left {}",
         row.step, steps.size(), steps, spoken_time(row.time), row.worst_aspect_ratio, row.rung,
-        100 * row.touched_fraction, row.mesh_seconds, heat, clock_time(row.seconds_left));
+        100 * row.touched_fraction, row.mesh_seconds, heat,
+        row.temperatures.empty() ? "" : "  " + row.temperatures, clock_time(row.seconds_left));
 }
 
 Progress::Progress(std::FILE* out) : out_(out), terminal_(columns(out) > 0) {}

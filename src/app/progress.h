@@ -17,6 +17,7 @@ struct ProgressRow {
     double touched_fraction = 0;         // [-] of the cells
     double mesh_seconds = 0;             // of this step
     std::optional<double> heat_seconds;  // of this step; nothing: no heat in the case
+    std::string temperatures;            // of the bodies, as "droplet 2,391 K"; empty: nothing to tell
     double seconds_left = 0;             // of the run, estimated
 };
 

@@ -26,6 +26,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <set>
 #include <memory>
 #include <new>
 #include <optional>
@@ -37,12 +38,13 @@ namespace {
 constexpr double least_dt_share = 1e-3;    // of the wanted dt: below, the floors count as unreachable
 constexpr double same_time = 1e-9;         // of the wanted dt: what is left of a step is rounding
 
-State start(const Case& it, const Watch* watch) {
+State start(const Case& it, const Ranks& ranks) {
+    const Watch* watch = ranks.watch;
     Mesh mesh = initial_mesh(it.domain, adapt_options(it, watch));
     std::vector<NodalField> fields;
     if (it.heat) {
         check_heat(*it.heat, mesh);
-        fields.push_back(initial_temperature(mesh, *it.heat));
+        fields.push_back(initial_temperature(ranks, mesh, *it.heat));
     }
     return {MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it, watch)), std::move(fields)};
 }
@@ -135,8 +137,8 @@ private:
     void write(const StepReport& report, std::chrono::steady_clock::time_point begin) {
         const State& state = place_.state;
         output_.write_step(place_.step, report, state);
-        if (!report.beyond_bounds.empty() && !std::exchange(warned_, true))
-            output_.say("warning: " + report.beyond_bounds);
+        for (const StepWarning& warning : report.warnings)
+            if (said_.insert(warning.about).second) output_.say("warning: " + warning.text);
         if (is_framed(place_, it_)) {
             write_frame();
             save();
@@ -157,7 +159,7 @@ private:
     RunOutput& output_;
     bool test_rollback_;
     bool is_saved_ = false;  // the checkpoint is of this step
-    bool warned_ = false;  // of temperatures beyond their bounds: once
+    std::set<std::string> said_;  // what warnings were about: each is said once
 };
 
 /// Does what all ranks do alike. A rank that its watch or an error has ended tells the others, who hear of it where
@@ -207,7 +209,7 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& 
 Place begin(const Case& it, const Ranks& ranks, Progress& progress) {
     const auto start_time = std::chrono::steady_clock::now();
     ranks.watch->progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
-    Place place{start(it, ranks.watch), 0, it.time.end / it.time.steps, it.time.steps, true};
+    Place place{start(it, ranks), 0, it.time.end / it.time.steps, it.time.steps, true};
     ranks.watch->progress = {};
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
     progress.say(mesh_line(place.state.moving.reference(), taken.count()));

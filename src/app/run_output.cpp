@@ -16,6 +16,16 @@
 namespace kropla {
 namespace {
 
+/// The mean temperature of each body; of many, of the first two.
+std::string temperatures(const StepReport& report, const Case& it) {
+    constexpr std::size_t most = 2;
+    std::string text;
+    for (std::size_t body = 0; body < std::min(most, report.bodies.size()); ++body)
+        text += fmt::format("{}{} {} K", body == 0 ? "" : ", ", it.domain.bodies[body].name,
+                            spoken_count(std::round(report.bodies[body].mean)));
+    return text;
+}
+
 std::string frame_name(std::int64_t step) { return fmt::format("frames/{:05}.vtu", step); }
 
 /// The columns of a run's table.
@@ -102,6 +112,7 @@ void RunOutput::show_progress(std::int64_t step, const StepReport& report, doubl
     row.touched_fraction = report.mesh.touched_fraction;
     row.mesh_seconds = report.mesh.mesh_seconds;
     if (it_.heat) row.heat_seconds = report.mesh.solve_seconds;
+    if (it_.heat) row.temperatures = temperatures(report, it_);
     row.seconds_left = seconds_left;
     progress_.show(row);
 }

@@ -1,5 +1,6 @@
 #include "app/step.h"
 
+#include "simulate/cells.h"
 #include <kropla/simulate/heat.h>
 
 #include <fmt/format.h>
@@ -9,29 +10,47 @@
 namespace kropla {
 namespace {
 
-/// The heat capacity of each region per volume [J/(m^3 K)]: its integral with the temperature is what is kept.
-std::vector<double> capacities(const HeatOptions& heat) {
-    std::vector<double> capacity;
-    for (const HeatRegion& region : heat.regions)
-        capacity.push_back(region.material.density * region.material.specific_heat);
-    return capacity;
+/// The coldest and hottest vertex of a region.
+struct Extremes {
+    Vertex coldest, hottest;
+};
+Extremes extremes_of(const Mesh& mesh, Region region, const Array<Vertex, double>& temperature) {
+    Extremes found;
+    for_each_cell(living_cells(mesh, region), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) {
+            if (!found.coldest.exists() || temperature[v] < temperature[found.coldest]) found.coldest = v;
+            if (!found.hottest.exists() || temperature[v] > temperature[found.hottest]) found.hottest = v;
+        }
+    });
+    return found;
 }
 
-/// A sentence if a temperature is noticeably beyond what conduction and convection can make; else empty.
-std::string beyond_bounds(const HeatExtremes& e, double t) {
-    constexpr double noticeable = 1e-3;  // [-] of what lies between the bounds; less is of no consequence
-    const auto beyond = [&](const Extreme& extreme, double by, double bound, const char* side) {
-        return fmt::format("the temperature is {:.3g} K {} {:.6g} K, which the equation allows, at ({:.4g}, {:.4g}, "
-                           "{:.4g}) m, t = {:.4g} s: cells are too coarse for the step there",
-                           by, side, bound, extreme.place.x, extreme.place.y, extreme.place.z, t);
-    };
-    const double lower = std::max(e.lower, std::min(e.least.value, e.upper)),
-                 upper = std::min(e.upper, std::max(e.most.value, e.lower));
-    const double most = noticeable * (upper - lower);
-    const double below = e.lower - e.least.value, above = e.most.value - e.upper;
-    if (below > most && below >= above) return beyond(e.least, below, e.lower, "below");
-    if (above > most) return beyond(e.most, above, e.upper, "above");
-    return "";
+/// Where temperatures are beyond the tables of materials.
+std::vector<StepWarning> beyond_tables(const HeatOptions& heat, const Mesh& mesh, const Array<Vertex, double>& temperature,
+                                       double t) {
+    std::vector<StepWarning> warnings;
+    for (std::size_t r = 0; r < heat.regions.size(); ++r) {
+        const HeatMaterial& m = heat.regions[r].material;
+        if (m.conductivity.constant() && m.density.constant() && m.specific_heat.constant()) continue;
+        const Extremes extremes = extremes_of(mesh, Region(r), temperature);
+        if (!extremes.coldest.exists()) continue;
+        for (const auto& [name, property] : {std::pair{"conductivity", &m.conductivity}, std::pair{"density", &m.density},
+                                             std::pair{"specific_heat", &m.specific_heat}}) {
+            if (property->constant()) continue;
+            const std::string key = fmt::format("{}.{}", region_key(heat, r), name);
+            const auto say = [&](Vertex v, double end, const char* word) {
+                const Vec3& x = mesh.position[v];
+                warnings.push_back({key, fmt::format("{} {} at {:.6g} K; at ({:.4g}, {:.4g}, {:.4g}) m, t = {:.4g} s it is "
+                                                     "{:.6g} K: the value at the end of the table holds there", key, word,
+                                                     end, x.x, x.y, x.z, t, temperature[v])});
+            };
+            if (temperature[extremes.hottest] > property->temperatures().back())
+                say(extremes.hottest, property->temperatures().back(), "ends");
+            else if (temperature[extremes.coldest] < property->temperatures().front())
+                say(extremes.coldest, property->temperatures().front(), "begins");
+        }
+    }
+    return warnings;
 }
 
 /// What is carried, solved for and looked at in a step of the case.
@@ -39,27 +58,44 @@ class Simulation {
 public:
     Simulation(State& state, const Case& it, const Ranks& ranks) : state_(state), it_(it), ranks_(ranks) {
         if (!it.heat) return;
-        fields_.per_vertex(state.fields.front().values, {.weight = capacities(*it.heat)});
+        if (proportional(*it.heat)) {
+            fields_.per_vertex(temperature(), {.weight = capacities(*it.heat)});
+            return;
+        }
+        enthalpy_ = enthalpies(state.moving.reference(), *it.heat, temperature());
+        for (std::size_t r = 0; r < enthalpy_.size(); ++r) fields_.per_vertex(enthalpy_[r], {.only = Region(r)});
+        fields_.per_vertex(temperature());
     }
 
     Advanced advance(const StepOptions& options, std::function<void(const Mesh&)> last_look = {}) {
         AdvanceOptions how{.least_dt = options.least_dt, .last_look = std::move(last_look), .watch = ranks_.watch};
-        if (it_.heat)
-            how.contents = {[&](const Mesh& mesh) { return energy(mesh, *it_.heat, state_.fields.front().values); }};
-        return kropla::advance(state_.moving, fields_, options.dt, [&](const StepToSolve& step) { return solve(step); },
-                               how);
+        if (it_.heat) how.contents = {[&](const Mesh& mesh) { return energy_on(mesh); }};
+        Advanced done = kropla::advance(state_.moving, fields_, options.dt,
+                                        [&](const StepToSolve& step) { return solve(step); }, how);
+        if (!enthalpy_.empty()) temperature_of(state_.moving.reference(), *it_.heat, enthalpy_, temperature());
+        return done;
     }
 
     StepReport report;
 
 private:
+    [[nodiscard]] Array<Vertex, double>& temperature() { return state_.fields.front().values; }
+    /// Into the arrays that `fields_` knows.
+    void take_enthalpies(const Mesh& mesh) {
+        std::ranges::move(enthalpies(mesh, *it_.heat, temperature()), enthalpy_.begin());
+    }
+    [[nodiscard]] double energy_on(const Mesh& mesh) {
+        return enthalpy_.empty() ? energy(mesh, *it_.heat, temperature()) : energy_of(mesh, enthalpy_);
+    }
+
     Answer solve(const StepToSolve& step) {
         if (!it_.heat) return Solved{};
-        const HeatReport heat = step_heat(ranks_, step.before, step.current, *it_.heat, state_.fields.front(), step.time,
-                                          step.dt);
-        report.beyond_bounds = beyond_bounds(heat.extremes, step.time + step.dt);
-        report.heat_from_bodies.clear();
-        for (const SurfaceFlux& flux : heat.surfaces) report.heat_from_bodies.push_back(flux.total);
+        if (!enthalpy_.empty()) temperature_of(step.before, *it_.heat, enthalpy_, temperature());
+        HeatReport heat =
+            step_heat(ranks_, step.before, step.current, *it_.heat, state_.fields.front(), step.time, step.dt);
+        if (!enthalpy_.empty()) take_enthalpies(step.current);
+        report.warnings = beyond_tables(*it_.heat, step.current, temperature(), step.time + step.dt);
+        report.heat = std::move(heat);
         return Solved{};
     }
 
@@ -67,6 +103,7 @@ private:
     const Case& it_;
     const Ranks& ranks_;
     Fields fields_;
+    std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor
 };
 
 /// Not an error: nobody but `take_step_back` hears of it.
@@ -80,8 +117,16 @@ AdaptOptions adapt_options(const Case& it, const Watch* watch) {
 
 StepReport time_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
     Simulation simulation(state, it, ranks);
-    simulation.report.mesh = simulation.advance(options);
-    return std::move(simulation.report);
+    StepReport& report = simulation.report;
+    const auto states = [&] {
+        return body_states(it.domain, state.moving.reference(), it.heat ? &state.fields.front().values : nullptr);
+    };
+    const std::vector<BodyState> before = states();
+    report.mesh = simulation.advance(options);
+    report.bodies = states();
+    for (std::size_t body = 0; body < before.size(); ++body)
+        report.velocities.push_back((report.bodies[body].place - before[body].place) / report.mesh.dt);
+    return std::move(report);
 }
 
 void take_step_back(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/body_state.h"
 #include "app/case.h"
 #include <kropla/simulate/fields.h>
 #include "simulate/partition.h"
@@ -16,11 +17,19 @@ struct State {
     std::vector<NodalField> fields;  // on moving.reference(); none if nothing is simulated
 };
 
+/// Something that a user should hear of, once.
+struct StepWarning {
+    std::string about;  // what is not to be said twice
+    std::string text;
+};
+
 /// What an accepted step was and cost, and what it found.
 struct StepReport {
     Advanced mesh;
-    std::vector<double> heat_from_bodies;  // [W] through the surface of body 1, 2, ...
-    std::string beyond_bounds;             // if the temperature is: how far and where
+    HeatReport heat;                     // if heat is simulated
+    std::vector<BodyState> bodies;       // at its end
+    std::vector<Vec3> velocities;        // [m/s] of the bodies' centroids, in the mean over it
+    std::vector<StepWarning> warnings;
 };
 
 [[nodiscard]] AdaptOptions adapt_options(const Case& it, const Watch* watch = nullptr);

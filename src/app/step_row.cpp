@@ -1,27 +1,59 @@
 #include "app/step_row.h"
 
+#include "app/case_heat.h"
 #include <kropla/mesh/prisms.h>
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace kropla {
 namespace {
 
-/// What the temperature conserves, how far the transfer missed it, and what became of its values.
-void add_energy(const StepReport& report, std::size_t bodies, StepRow& row) {
+/// Where each body is, how it goes, and how large and warm it is.
+void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
+    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
+        const std::string name = column_name(it.domain.bodies[body].name);
+        const BodyState state = body < report.bodies.size() ? report.bodies[body] : BodyState{};
+        const Vec3 velocity = body < report.velocities.size() ? report.velocities[body] : Vec3{};
+        row.insert(row.end(), {{fmt::format("x_{} [m]", name), state.place.x},
+                               {fmt::format("y_{} [m]", name), state.place.y},
+                               {fmt::format("z_{} [m]", name), state.place.z},
+                               {fmt::format("u_{} [m/s]", name), velocity.x},
+                               {fmt::format("v_{} [m/s]", name), velocity.y},
+                               {fmt::format("w_{} [m/s]", name), velocity.z},
+                               {fmt::format("volume_{} [m^3]", name), state.volume},
+                               {fmt::format("area_{} [m^2]", name), state.area}});
+        if (!it.heat) continue;
+        const double leaves = body < report.heat.surfaces.size() ? report.heat.surfaces[body].total : 0;
+        row.insert(row.end(), {{fmt::format("temperature_min_{} [K]", name), state.coldest},
+                               {fmt::format("temperature_mean_{} [K]", name), state.mean},
+                               {fmt::format("temperature_max_{} [K]", name), state.hottest},
+                               {fmt::format("heat_from_{} [W]", name), leaves}});
+    }
+}
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+/// What the temperature conserves, where it comes from, how far step and transfer missed it, and what became of values.
+void add_energy(const StepReport& report, StepRow& row) {
     const ContentReport energy = report.mesh.contents.empty() ? ContentReport{} : report.mesh.contents.front();
-    const TransferReport transfer = report.mesh.transfer.empty() ? TransferReport{} : report.mesh.transfer.front();
+    const TransferReport transfer = report.mesh.transfer.empty() ? TransferReport{} : report.mesh.transfer.back();
     const double error = energy.after != 0 ? energy.by_transfer / std::abs(energy.after) : 0;
     row.insert(row.end(), {{"energy_integral [J]", energy.after},
                            {"energy_transfer_error", error},
                            {"energy_before_transfer [J]", energy.before_transfer},
                            {"energy_limited [K]", transfer.limited},
                            {"energy_beyond_bounds [K]", transfer.beyond}});
-    for (std::size_t body = 0; body < bodies; ++body)
-        row.push_back({fmt::format("energy_from_body_{} [J/s]", body + 1),
-                       body < report.heat_from_bodies.size() ? report.heat_from_bodies[body] : 0});
+    const HeatBalance& balance = report.heat.balance;
+    const double dt = report.mesh.dt > 0 ? report.mesh.dt : 1;
+    for (std::size_t face = 0; face < face_keys.size(); ++face)
+        row.push_back({fmt::format("heat_out_{} [W]", face_keys[face]), (0 - balance.faces[face]) / dt});
+    row.insert(row.end(), {{"heat_sources [W]", sum(balance.sources) / dt},
+                           {"heat_at_surfaces [W]", sum(balance.surfaces) / dt},
+                           {"heat_held [W]", sum(balance.held) / dt},
+                           {"energy_error [J]", balance.error()}});
 }
 
 }  // namespace
@@ -57,7 +89,8 @@ StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, 
                    {"transfer_seconds [s]", done.transfer_seconds},
                    {"mesh_cpu_seconds [s]", done.mesh_cpu_seconds},
                    {"transferred_fraction", done.transferred_fraction}};
-    if (it.heat) add_energy(report, it.domain.bodies.size(), row);
+    add_bodies(report, it, row);
+    if (it.heat) add_energy(report, row);
     return row;
 }
 

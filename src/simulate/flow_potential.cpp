@@ -3,6 +3,7 @@
 //     boundary sets up has the least kinetic energy of all that satisfy continuity.
 #include "simulate/flow_potential.h"
 
+#include "simulate/assembly.h"
 #include "simulate/elements.h"
 #include "simulate/solver.h"
 
@@ -65,31 +66,28 @@ void balance(const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
 
 /// The integrals of grad phi_i . grad phi_j [m].
 template <std::size_t n>
-std::array<std::array<double, n>, n> stiffness(const CellPoints<n>& points) {
-    std::array<std::array<double, n>, n> matrix = {};
+CellSystem<n> laplacian(const CellPoints<n>& points) {
+    CellSystem<n> system;
     for (const CellPoint<n>& point : points)
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = 0; j < n; ++j)
-                matrix[i][j] +=
-                    dot(point.volume_gradient[i], point.volume_gradient[j]) / point.volume;
-    return matrix;
+                system.matrix[i][j] += dot(point.volume_gradient[i], point.volume_gradient[j]) / point.volume;
+    return system;
 }
 
 /// A residual is gas lost or gained. Of no weight is what would fill the vertex's share of the volume in a
 /// step: the tolerance then is the relative change of a constant state.
-LinearSystem potential_system(const Mesh& mesh, const Cells& cells, const Numbering& numbering, const Ranks& ranks,
-                              const Array<Vertex, double>& swept, const Array<Vertex, double>& share,
-                              double dt) {
-    const Cells mine = cells_of_rank(mesh, cells, numbering, ranks.rank);
-    LinearSystem system = empty_system(mesh, mine, numbering, ranks.rank);
-    for_each_cell(mine, [&](const auto& cell) {
-        heed(ranks.watch);
-        const auto vertices = cell_vertices(mesh, cell);
-        add_to(system, numbering, vertices, stiffness<vertices.size()>(cell_points(corners(mesh, cell))));
-    });
-    for (std::size_t r = 0; r < numbering.vertex.size(); ++r) {
-        add_to_right(system, static_cast<int>(r), swept[numbering.vertex[r]]);
-        add_to_negligible(system, static_cast<int>(r), share[numbering.vertex[r]] / dt);
+LinearSystem potential_system(const Mesh& mesh, const Pattern& pattern, const Array<Vertex, double>& swept,
+                              const Array<Vertex, double>& share, double dt, const Watch* watch) {
+    CellSystems systems;
+    ask_cells(pattern.cells, [&](const auto& cell) { return laplacian(cell_points(corners(mesh, cell))); },
+              [](const auto&) { return true; }, systems, watch);
+    LinearSystem system(pattern.rows);
+    add_cells(pattern, systems, system);
+    for (std::size_t r = 0; r < system.right.size(); ++r) {
+        const Vertex v = pattern.numbering.vertex[static_cast<std::size_t>(pattern.rows.first_row) + r];
+        system.right[r] = swept[v];
+        system.negligible[r] = share[v] / dt;
     }
     return system;
 }
@@ -110,7 +108,7 @@ DisplacedFlow solve_displaced_flow(const Ranks& ranks, const Mesh& before, const
     const SolverChoice choice{.name = "potential flow",
                               .prefix = "potential_",
                               .preconditioner = Preconditioner::multigrid,
-                              .tolerance = 5e-14,
+                              .tolerance = 2e-13,
                               .potential = true};
     for (Region region : resting) {
         Array<Vertex, double> swept = swept_by_boundary(step, region);
@@ -118,10 +116,10 @@ DisplacedFlow solve_displaced_flow(const Ranks& ranks, const Mesh& before, const
         const Cells cells = living_cells(current, region);
         const Array<Vertex, double> share = shares_of_volume(current, cells);
         balance(share, swept);
-        const Numbering numbering = number_vertices(current, cells, ranks.count);
-        const auto system = potential_system(current, cells, numbering, ranks, swept, share, dt);
+        const Pattern pattern = make_pattern(current, cells, ranks);
+        const LinearSystem system = potential_system(current, pattern, swept, share, dt, ranks.watch);
         const Solution potential = solve(ranks, system, choice);
-        flow.potential[region] = at_vertices(current, numbering, potential.value);
+        flow.potential[region] = at_vertices(current, pattern.numbering, potential.value);
         flow.iterations += potential.iterations;
     }
     return flow;

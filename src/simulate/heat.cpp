@@ -3,6 +3,8 @@
 
 #include <kropla/base/error.h>
 #include "simulate/elements.h"
+#include "simulate/heat_cell.h"
+#include "simulate/step_mean.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,17 +20,43 @@ std::string text(double value) {
     return out.str();
 }
 
-void check_positive(double value, const std::string& key) {
-    if (std::isfinite(value) && value > 0) return;
-    throw CaseError(key + " must be positive, got " + text(value));
+void check_positive(const Property& property, const std::string& key) {
+    for (std::size_t k = 0; k < property.values().size(); ++k) {
+        const double value = property.values()[k];
+        if (std::isfinite(value) && value > 0) continue;
+        throw CaseError(key + " must be positive, got " + text(value) +
+                        (property.constant() ? "" : " at " + text(property.temperatures()[k]) + " K"));
+    }
 }
 
 void check_region(const HeatRegion& region, const std::string& key) {
-    check_positive(region.material.conductivity, key + ".conductivity");
-    check_positive(region.material.density, key + ".density");
-    check_positive(region.material.specific_heat, key + ".specific_heat");
-    if (!std::isfinite(region.initial))
-        throw CaseError(key + ".initial must be finite, got " + text(region.initial));
+    const HeatMaterial& m = region.material;
+    check_positive(m.conductivity, key + ".conductivity");
+    check_positive(m.density, key + ".density");
+    check_positive(m.specific_heat, key + ".specific_heat");
+    if (!(m.latent_heat >= 0 && std::isfinite(m.latent_heat)))
+        throw CaseError(key + ".latent_heat must be at least 0, got " + text(m.latent_heat));
+    if (m.latent_heat > 0 && !(m.solidus < m.liquidus))
+        throw CaseError(key + ".solidus must be below liquidus, got " + text(m.solidus) + " and " + text(m.liquidus) + " K");
+    if (!std::isfinite(region.initial.value))
+        throw CaseError(key + ".initial must be finite, got " + text(region.initial.value));
+    if (region.held && !std::isfinite(*region.held))
+        throw CaseError(key + ".held must be finite, got " + text(*region.held));
+}
+
+/// Where a rising function is zero, between `low` and `high`: by halves, to neighbouring numbers.
+template <class Function>
+double rising_root(const Function& function, double low, double high) {
+    for (;;) {
+        const double middle = low + 0.5 * (high - low);
+        if (!(low < middle && middle < high)) return function(high) <= 0 ? high : low;
+        (function(middle) <= 0 ? low : high) = middle;
+    }
+}
+
+void check_exchange(const HeatExchange& exchange, const std::string& key) {
+    if ((exchange.coefficient || exchange.emissivity) && !exchange.ambient)
+        throw CaseError(key + ".ambient is not given: the temperature [K] with which heat is exchanged");
 }
 
 }  // namespace
@@ -37,6 +65,11 @@ std::string region_key(const HeatOptions& options, std::size_t region) {
     const std::string& name = options.regions[region].name;
     if (!name.empty()) return "heat.region." + name;
     return region == 0 ? "heat.region.surroundings" : "heat.region.(body " + std::to_string(region) + ")";
+}
+
+std::string surface_key(const HeatOptions& options, std::size_t region) {
+    const std::string& name = options.regions[region].name;
+    return name.empty() ? "heat.surface.(body " + std::to_string(region) + ")" : "heat.surface." + name;
 }
 
 std::string face_key(std::size_t face) {
@@ -51,39 +84,105 @@ void check_heat(const HeatOptions& options, const Mesh& mesh) {
         throw CaseError("heat: the mesh has " + std::to_string(needed) +
                         " regions, materials are given for " + std::to_string(options.regions.size()));
     }
+    for (std::size_t body = 1; body <= options.surfaces.size(); ++body)
+        check_exchange(options.surfaces[body - 1].exchange, surface_key(options, body));
     for (std::size_t f = 0; f < options.faces.size(); ++f) {
         const HeatFace& face = options.faces[f];
-        if (face.kind == HeatFace::Kind::insulated || face.quantity) continue;
-        const bool is_value = face.kind == HeatFace::Kind::value;
-        throw CaseError(face_key(f) + (is_value ? ".value" : ".flux") + " is not given");
+        check_exchange(face.exchange, face_key(f));
+        if (face.kind == HeatFace::Kind::value && !face.quantity) throw CaseError(face_key(f) + ".value is not given");
+        if (face.kind == HeatFace::Kind::flux && !face.quantity && !face.power)
+            throw CaseError(face_key(f) + ".flux is not given");
     }
 }
 
-NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
-    check_heat(options, mesh);
-    NodalField field{"temperature", "K", Array<Vertex, double>(mesh.position.size(), 0.0)};
-    Array<Vertex, Region> region(mesh.position.size());
+bool proportional(const HeatOptions& options) {
+    return std::ranges::all_of(enthalpy_curves(options), [](const Enthalpy& h) { return h.proportional(); });
+}
+
+std::vector<double> capacities(const HeatOptions& options) {
+    std::vector<double> capacity;
+    for (const Enthalpy& h : enthalpy_curves(options)) capacity.push_back(h.slope(0));
+    return capacity;
+}
+
+std::vector<Array<Vertex, double>> enthalpies(const Mesh& mesh, const HeatOptions& options,
+                                              const Array<Vertex, double>& temperature) {
+    const Array<Region, Enthalpy> curve = enthalpy_curves(options);
+    std::vector<Array<Vertex, double>> all(options.regions.size(), Array<Vertex, double>(mesh.position.size(), 0.0));
     for_each_cell(living_cells(mesh), [&](const auto& cell) {
-        for (Vertex v : cell_vertices(mesh, cell)) region[v] = std::max(region[v], cell_region(mesh, cell));
+        const Region region = cell_region(mesh, cell);
+        for (Vertex v : cell_vertices(mesh, cell))
+            all[static_cast<std::size_t>(region.value)][v] = curve[region](temperature[v]);
     });
-    for (Vertex v : mesh.position.indices()) {
-        if (region[v].exists())
-            field.values[v] = options.regions[static_cast<std::size_t>(region[v].value)].initial;
-    }
-    return field;
+    return all;
 }
 
-double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,
-              Region only) {
+double energy_of(const Mesh& mesh, const std::vector<Array<Vertex, double>>& enthalpies) {
     double sum = 0;
-    for_each_cell(living_cells(mesh, only), [&](const auto& cell) {
-        const auto& m = options.regions[static_cast<std::size_t>(cell_region(mesh, cell).value)].material;
-        const auto values = at_corners(temperature, cell_vertices(mesh, cell));
+    for_each_cell(living_cells(mesh), [&](const auto& cell) {
+        const auto& enthalpy = enthalpies[static_cast<std::size_t>(cell_region(mesh, cell).value)];
+        const auto values = at_corners(enthalpy, cell_vertices(mesh, cell));
         const auto points = cell_points(corners(mesh, cell));
-        for (std::size_t k = 0; k < points.size(); ++k)
-            sum += m.density * m.specific_heat * points[k].volume * mean_value(k, values);
+        for (std::size_t k = 0; k < points.size(); ++k) sum += points[k].volume * mean_value(k, values);
     });
     return sum;
+}
+
+double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature, Region only) {
+    const Array<Region, Enthalpy> curve = enthalpy_curves(options);
+    double sum = 0;
+    for_each_cell(living_cells(mesh, only), [&](const auto& cell) {
+        const Enthalpy& h = curve[cell_region(mesh, cell)];
+        auto values = at_corners(temperature, cell_vertices(mesh, cell));
+        for (double& value : values) value = h(value);
+        const auto points = cell_points(corners(mesh, cell));
+        for (std::size_t k = 0; k < points.size(); ++k) sum += points[k].volume * mean_value(k, values);
+    });
+    return sum;
+}
+
+void temperature_of(const Mesh& mesh, const HeatOptions& options, const std::vector<Array<Vertex, double>>& enthalpies,
+                    Array<Vertex, double>& temperature) {
+    const Array<Region, Enthalpy> curve = enthalpy_curves(options);
+    struct Part {
+        Region region;
+        double volume = 0;
+    };
+    Array<Vertex, std::vector<Part>> parts(mesh.position.size());  // of each region at the vertex
+    for_each_cell(living_cells(mesh), [&](const auto& cell) {
+        const Region region = cell_region(mesh, cell);
+        const auto vertices = cell_vertices(mesh, cell);
+        const auto points = cell_points(corners(mesh, cell));
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            auto& at = parts[vertices[i]];
+            auto part = std::ranges::find(at, region, &Part::region);
+            if (part == at.end()) part = at.insert(at.end(), {region});
+            for (std::size_t k = 0; k < points.size(); ++k)
+                part->volume += points[k].volume * shape_means<vertices.size()>[k].value[i];
+        }
+    });
+    temperature.resize(mesh.position.size(), 0.0);
+    for (Vertex v : parts.indices()) {
+        if (parts[v].empty()) continue;
+        const auto held = [&](const Part& part) { return enthalpies[static_cast<std::size_t>(part.region.value)][v]; };
+        const auto alone = [&](const Part& part) { return curve[part.region].temperature(held(part)); };
+        if (parts[v].size() == 1) {
+            temperature[v] = alone(parts[v].front());
+            continue;
+        }
+        double low = INFINITY, high = -INFINITY, all = 0;  // the common temperature is between those of the sides
+        for (const Part& part : parts[v]) {
+            low = std::min(low, alone(part));
+            high = std::max(high, alone(part));
+            all += part.volume * held(part);
+        }
+        const auto rest = [&](double at) {
+            double sum = -all;
+            for (const Part& part : parts[v]) sum += part.volume * curve[part.region](at);
+            return sum;
+        };
+        temperature[v] = rising_root(rest, low, high);
+    }
 }
 
 }  // namespace kropla

@@ -2,10 +2,12 @@
 
 #include <kropla/mesh/mesh.h>
 #include <kropla/simulate/fields.h>
+#include <kropla/simulate/material.h>
 #include <kropla/simulate/petsc.h>
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,15 +49,16 @@ namespace kropla {
 // Where cells are too coarse for the convection, SUPG: the residual without diffusion (linear tets have none,
 // prisms next to none), rho c (dT/dt + v.grad T) - s, is weighted with tau v.grad phi_i, v the mean of u - w
 // over the cell. It is zero for a constant state and its weights sum to zero: both properties hold.
+//
+// Where a temperature would be a new extremum, cells are of low order (bounded.h): M lumped, no L, no SUPG.
+//
+// Where rho c depends on the temperature, or latent heat is taken up, M and C act on the enthalpy h(T) per volume
+// instead of rho c T, and the step is repeated: h about the last temperatures by Newton's method, differences of h
+// between corners by chords, k at the last temperatures, until these stay. What is kept is the integral of h, taken as
+// linear between vertices. Radiation at boundaries likewise.
 
 /// A quantity at a place [m] and a time [s].
 using Quantity = std::function<double(const Vec3& place, double t)>;
-
-struct HeatMaterial {
-    double conductivity = 1;   // [W/(m K)]
-    double density = 1;        // [kg/m^3]
-    double specific_heat = 1;  // [J/(kg K)]
-};
 
 /// How the material of a region moves.
 enum class Carried {
@@ -63,37 +66,83 @@ enum class Carried {
     at_rest,    ///< it rests, but for making way for the bodies that move in it
 };
 
+/// The temperature that a region begins with [K].
+struct HeatStart {
+    double value = 0;
+    Quantity profile = {};  // if given, instead
+    bool steady = false;    // the steady state that all regions with `steady` have together beside the others
+    HeatStart(double number = 0) : value(number) {}  // NOLINT: a number is a start
+    HeatStart(Quantity quantity) : profile(std::move(quantity)) {}  // NOLINT
+};
+
 struct HeatRegion {
     HeatMaterial material = {};
     Carried carried = Carried::at_rest;
-    double initial = 0;    // [K]
-    Quantity source = {};  // [W/m^3]; empty: none
+    HeatStart initial = 0;
+    Quantity source = {};   // [W/m^3]; empty: none
+    Quantity power = {};    // [W] if given, `source` is scaled so that this is its integral over the region
+    std::optional<double> held = {};  // [K] kept so everywhere in the region
     std::string name = {};  // for messages; empty: by its number
 };
 
+/// Heat that a surface gives to what is beyond it: coefficient (T - ambient) + emissivity sigma (T^4 - ambient^4),
+/// per area. What is empty is none.
+struct HeatExchange {
+    Quantity coefficient = {};  // [W/(m^2 K)]
+    Quantity emissivity = {};   // [-] 0 to 1
+    Quantity ambient = {};      // [K] needed with either
+};
+
 struct HeatFace {
-    enum class Kind { insulated, value, flux } kind = Kind::insulated;
+    enum class Kind { insulated, value, flux, exchange } kind = Kind::insulated;
     Quantity quantity = {};  // the value [K], or the flux into the domain [W/m^2]
+    HeatExchange exchange = {};
+    Quantity power = {};     // [W] if given, the flux is scaled so that this comes in
+};
+
+/// What happens at the surface of a body, besides conduction through it.
+struct HeatSurface {
+    Quantity flux = {};   // [W/m^2] set free there
+    Quantity power = {};  // [W] if given, the flux is scaled so that this is set free
+    HeatExchange exchange = {};
 };
 
 struct HeatOptions {
-    std::vector<HeatRegion> regions;     // region 0 (the surroundings), 1, ...
-    std::array<HeatFace, 6> faces = {};  // x min, x max, y min, y max, z min, z max
+    std::vector<HeatRegion> regions;        // region 0 (the surroundings), 1, ...
+    std::array<HeatFace, 6> faces = {};     // x min, x max, y min, y max, z min, z max
+    std::vector<HeatSurface> surfaces = {}; // of bodies 1, 2, ...; fewer: none of the others
 };
 
-/// What messages call a region, "heat.region.droplet", and a face of the box, "heat.face.z_min".
+/// What messages call a region, "heat.region.droplet", a body's surface, "heat.surface.droplet", and a face of the box,
+/// "heat.face.z_min".
 [[nodiscard]] std::string region_key(const HeatOptions& options, std::size_t region);
+[[nodiscard]] std::string surface_key(const HeatOptions& options, std::size_t region);
 [[nodiscard]] std::string face_key(std::size_t face);
 
-/// Throws CaseError, naming the key below `heat`, if a material is not positive, an initial value not finite,
-/// a face without its quantity, or a region of the mesh without its material.
+/// Throws CaseError, naming the key below `heat`, if a material is not positive (at any temperature of a table), an
+/// initial value not finite, solidus not below liquidus, a face without its quantity, or a region of the mesh without
+/// its material.
 void check_heat(const HeatOptions& options, const Mesh& mesh);
 
-/// "temperature" [K], the initial value of each region; a body's at its surface.
+/// Are enthalpies multiples of the temperature in all regions? Then a transfer of the temperature, weighted by
+/// `capacities`, keeps the energy; else the enthalpies are to be carried.
+[[nodiscard]] bool proportional(const HeatOptions& options);
+/// Of each region [J/(m^3 K)], where they are.
+[[nodiscard]] std::vector<double> capacities(const HeatOptions& options);
+
+/// Is the steady state of the regions that begin with one unique? The domain is in one piece, so it is if anything in it
+/// says how warm it is: a region that begins otherwise, a face with values, a surface or face that exchanges heat.
+[[nodiscard]] bool has_steady_state(const HeatOptions& options);
+
+/// "temperature" [K], as each region begins; a body's at its surface. Throws as step_heat where it is a steady state, and
+/// CaseError if there is none or more than one.
+[[nodiscard]] NodalField initial_temperature(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options);
+/// Where no region begins with a steady state.
 [[nodiscard]] NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options);
 
 /// The heat that leaves a body through its surface in a step, in the mean over the step, positive out of it.
-/// `total` * dt is, to the solver's tolerance, what the body's energy fell by, less what sources brought.
+/// `total` * dt is, to the solver's tolerance, what the body's energy fell by, less what sources and the surface itself
+/// brought.
 struct SurfaceFlux {
     Region body;
     double total = 0;              // [W]
@@ -108,30 +157,57 @@ struct Extreme {
 };
 
 /// The coldest and hottest vertices after a step, and the bounds that conduction and convection keep: the extremes
-/// before it and of values at faces; none (infinite) on the side to which sources or fluxes act.
+/// before it, of values at faces and of what surfaces exchange heat with; none (infinite) on the side to which sources
+/// or fluxes act.
 struct HeatExtremes {
     Extreme least, most;
     double lower = 0, upper = 0;  // [K]
 };
 
+/// Where the energy of a step came from [J]. What is not there is zero.
+struct HeatBalance {
+    double before = 0, after = 0;      // the energy at its begin and end
+    std::array<double, 6> faces = {};  // in through each face
+    std::vector<double> surfaces;      // set free at the surface of body 1, 2, ..., less what it gave away
+    std::vector<double> sources;       // in each region
+    std::vector<double> held;          // brought to keep each region as it is held
+
+    [[nodiscard]] double brought() const;
+    [[nodiscard]] double error() const { return after - before - brought(); }
+};
+
 struct HeatReport {
     int iterations = 0;            // for the temperature
+    int passes = 0;                // systems solved: several where something is not linear, or bounds were broken
+    std::size_t diffused = 0;      // vertices whose cells had to be of low order
     double error = 0;              // [-] of the solution, as solver.h has it: the backward error by vertices
     int potential_iterations = 0;  // for the flow that makes way for the bodies
     std::vector<SurfaceFlux> surfaces;  // of bodies 1, 2, ...
     HeatExtremes extremes = {};
+    HeatBalance balance = {};
 };
 
 /// Takes the temperature from t [s] on `before` to t + dt on `current`: the same connectivity. At a vertex of
-/// several faces with values, the first of them holds. All ranks call it together with the same arguments,
-/// and all get the whole field. The solver's options are -ksp_type, -ksp_rtol, -pc_type and so on. Throws
-/// CaseError as check_heat, or if dt is not positive or a quantity not finite; SolverError if the solver does
-/// not converge, Interrupted if the watch of the ranks says so. Then `temperature` is untouched.
+/// several faces with values, the first of them holds; a region that is held comes before them. All ranks call it
+/// together with the same arguments, and all get the whole field. The solver's options are -ksp_type, -ksp_rtol,
+/// -pc_type and so on. Throws CaseError as check_heat, or if dt is not positive, a quantity not finite or a power
+/// without a place to go; SolverError if the solver does not converge, or what is not linear does not settle;
+/// Interrupted if the watch of the ranks says so. Then `temperature` is untouched.
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt);
 
-/// The integral of rho c T [J], of all regions or of one.
+/// The energy [J], of all regions or of one: the integral of the enthalpy.
 [[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options,
                             const Array<Vertex, double>& temperature, Region only = {});
+
+/// The enthalpy of each region [J/m^3] at its vertices; elsewhere zero.
+[[nodiscard]] std::vector<Array<Vertex, double>> enthalpies(const Mesh& mesh, const HeatOptions& options,
+                                                            const Array<Vertex, double>& temperature);
+/// The energy that these hold [J].
+[[nodiscard]] double energy_of(const Mesh& mesh, const std::vector<Array<Vertex, double>>& enthalpies);
+/// The temperature that these enthalpies make: at an interface the one with which both sides together hold what they
+/// do. Vertices without cells keep what `temperature` has.
+void temperature_of(const Mesh& mesh, const HeatOptions& options, const std::vector<Array<Vertex, double>>& enthalpies,
+                    Array<Vertex, double>& temperature);
 
 }  // namespace kropla

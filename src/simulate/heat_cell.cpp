@@ -15,58 +15,99 @@ template <std::size_t n>
 struct Cell {
     Corners<n> x0, x1;                // where the corners came from, seen from their body, and are [m]
     CellPoints<n> before, now;        // at the step's begin and end
-    std::array<double, n> old;        // [K]
+    std::array<double, n> old;        // enthalpy at the begin [J/m^3]
+    std::array<double, n> guess;      // [K] at the end
+    std::array<double, n> enthalpy;   // at the guess [J/m^3]
+    std::array<double, n> slope;      // of it there [J/(m^3 K)]
     std::array<double, n> source;     // [W/m^3]
     std::array<double, n> potential;  // [m^2/s]
-    double capacity;                  // rho c [J/(m^3 K)]
     double conductivity;              // [W/(m K)]
     double dt;                        // [s]
+    bool proportional;                // the enthalpy is `slope` times the temperature, anywhere
+    bool low;                         // of low order
 };
+
+template <std::size_t n>
+double mean(const std::array<double, n>& values) {
+    double sum = 0;
+    for (double value : values) sum += value;
+    return sum / static_cast<double>(n);
+}
 
 template <std::size_t n, class Name>
 Cell<n> gather(const HeatStep& step, const Name& name) {
     const auto v = cell_vertices(step.current, name);
     const Region region = cell_region(step.current, name);
-    const HeatMaterial& m = step.options.regions[static_cast<std::size_t>(region.value)].material;
+    const Property& conductivity = step.options.regions[static_cast<std::size_t>(region.value)].material.conductivity;
+    const Enthalpy& enthalpy = step.enthalpy[region];
+    const MaterialState& state = step.material[region];
     const auto& carried = step.carried[region];
     const Corners<n> x0 = corners(step.before, name), x1 = corners(step.current, name);
-    return {.x0 = carried.empty() ? x0 : corners(carried, step.current, name),
-            .x1 = x1,
-            .before = cell_points(x0),
-            .now = cell_points(x1),
-            .old = at_corners(step.old_temperature, v),
-            .source = at_corners(step.source[region], v),
-            .potential = at_corners(step.potential[region], v),
-            .capacity = m.density * m.specific_heat,
-            .conductivity = m.conductivity,
-            .dt = step.dt};
+    Cell<n> cell{.x0 = carried.empty() ? x0 : corners(carried, step.current, name),
+                 .x1 = x1,
+                 .before = cell_points(x0),
+                 .now = cell_points(x1),
+                 .old = {},
+                 .guess = {},
+                 .enthalpy = {},
+                 .slope = {},
+                 .source = at_corners(step.source[region], v),
+                 .potential = at_corners(step.potential[region], v),
+                 .conductivity = conductivity.constant() ? conductivity(0) : mean(at_corners(state.conductivity, v)),
+                 .dt = step.dt,
+                 .proportional = enthalpy.proportional(),
+                 .low = false};
+    if (cell.proportional) {
+        cell.slope.fill(enthalpy.slope(0));
+        for (std::size_t i = 0; i < n; ++i) cell.old[i] = cell.slope[i] * step.old_temperature[v[i]];
+    } else {
+        cell.old = at_corners(state.old, v);
+        cell.guess = at_corners(step.guess, v);
+        cell.enthalpy = at_corners(state.enthalpy, v);
+        cell.slope = at_corners(state.slope, v);
+    }
+    if (!step.low.empty())
+        for (Vertex corner : v) cell.low = cell.low || step.low[corner] != 0;
+    return cell;
 }
 
-/// Mass, conduction and source: the terms that do not know of motion but for the volume's change. In the
-/// matrix the consistent mass and L add up to the lumped one; on the old temperature they act with the old
-/// and the new volume.
+/// What is carried: a matrix on enthalpies, in the form of CellSystem [m^3].
 template <std::size_t n>
-CellSystem<n> conduction(const Cell<n>& cell) {
-    CellSystem<n> system;
+struct Carrying {
+    std::array<std::array<double, n>, n> matrix = {};
+    std::array<double, n> row_sum = {};
+};
+
+/// What there is, at the step's begin and end. In the matrix the consistent mass and L add up to the lumped one; on the
+/// old enthalpy they act with the old and the new volume. Of low order, both masses are lumped.
+template <std::size_t n>
+void add_mass(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& system) {
     for (std::size_t k = 0; k < cell.now.size(); ++k) {
-        const CellPoint<n>& point = cell.now[k];
         const ShapeMeans<n>& means = shape_means<n>[k];
-        const double conducted = cell.dt * cell.conductivity / point.volume;
-        const double gained = point.volume - cell.before[k].volume;
+        const double now = cell.now[k].volume, gained = now - cell.before[k].volume;
         for (std::size_t i = 0; i < n; ++i) {
             double old_product = 0;
-            for (std::size_t j = 0; j < n; ++j) {
-                system.matrix[i][j] += conducted * dot(point.volume_gradient[i], point.volume_gradient[j]);
-                old_product += means.product[i][j] * cell.old[j];
-            }
-            const double lumped = point.volume * means.value[i];
-            system.row_sum[i] += cell.capacity * lumped;
-            system.held[i] += cell.capacity * lumped;
-            system.right[i] += cell.capacity * (lumped * cell.old[i] - gained * old_product) +
-                               cell.dt * lumped * cell.source[i];
+            if (cell.low) old_product = means.value[i] * cell.old[i];
+            else
+                for (std::size_t j = 0; j < n; ++j) old_product += means.product[i][j] * cell.old[j];
+            const double lumped = now * means.value[i];
+            carrying.row_sum[i] += lumped;
+            system.held[i] += cell.slope[i] * lumped;
+            system.right[i] += lumped * cell.old[i] - gained * old_product;
+            system.load[i] += cell.dt * lumped * cell.source[i];
         }
     }
-    return system;
+}
+
+/// Conduction, on temperatures.
+template <std::size_t n>
+void add_conduction(const Cell<n>& cell, CellSystem<n>& system) {
+    for (const CellPoint<n>& point : cell.now) {
+        const double conducted = cell.dt * cell.conductivity / point.volume;
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < n; ++j)
+                system.matrix[i][j] += conducted * dot(point.volume_gradient[i], point.volume_gradient[j]);
+    }
 }
 
 /// The intrinsic time [s] of SUPG, for the speed |v| and its components v.grad phi_i, diffusivity [m^2/s] and
@@ -92,33 +133,31 @@ std::array<Vec3, n> mean_gradients(const CellPoints<n>& points) {
 /// SUPG, for the mean velocity `v` [m/s] of the material relative to the mesh.
 template <std::size_t n>
 void add_upwinding(const Cell<n>& cell, const std::array<Vec3, n>& mean_gradient, const Vec3& v,
-                   CellSystem<n>& system) {
+                   Carrying<n>& carrying, CellSystem<n>& system) {
     double sum_along = 0;
     for (const Vec3& g : mean_gradient) sum_along += std::abs(dot(v, g));
-    const double tau = intrinsic_time(norm(v), sum_along, cell.conductivity / cell.capacity, cell.dt);
+    const double tau = intrinsic_time(norm(v), sum_along, cell.conductivity / mean(cell.slope), cell.dt);
     for (std::size_t k = 0; k < cell.now.size(); ++k) {
         const CellPoint<n>& point = cell.now[k];
         std::array<double, n> along;  // the point's volume times v.grad phi_i [m^3/s]
         for (std::size_t i = 0; i < n; ++i) along[i] = dot(v, point.volume_gradient[i]);
-        const double known = cell.capacity * mean_value(k, cell.old) + cell.dt * mean_value(k, cell.source);
+        const double known = mean_value(k, cell.old) + cell.dt * mean_value(k, cell.source);
         for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t j = 0; j < n; ++j) {
-                system.matrix[i][j] += tau * cell.capacity * along[i] *
-                                       (shape_means<n>[k].value[j] + cell.dt * along[j] / point.volume);
-            }
-            system.row_sum[i] += tau * cell.capacity * along[i];  // the components sum to zero
+            for (std::size_t j = 0; j < n; ++j)
+                carrying.matrix[i][j] +=
+                    tau * along[i] * (shape_means<n>[k].value[j] + cell.dt * along[j] / point.volume);
+            carrying.row_sum[i] += tau * along[i];  // the components sum to zero
             system.right[i] += tau * along[i] * known;
         }
     }
 }
 
-/// What the material and the mesh carry past each other: - dt C, L on what moved (which makes nothing of a
-/// constant), and the upwinding.
+/// What the material and the mesh carry past each other: - dt C, and but for low order L on what moved (which makes
+/// nothing of a constant), and the upwinding.
 template <std::size_t n>
-void add_convection(const Cell<n>& cell, CellSystem<n>& system) {
+void add_convection(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& system) {
     const auto mean_volume_gradient = mean_volume_gradients(cell.x0, cell.x1);
-    const std::array<Vec3, n> mean_gradient = mean_gradients<n>(cell.now);
-    std::array<Vec3, n> moved;       // dt w
+    std::array<Vec3, n> moved;        // dt w
     std::array<Vec3, n> lumped = {};  // L on it
     for (std::size_t i = 0; i < n; ++i) moved[i] = cell.x1[i] - cell.x0[i];
     Vec3 past;  // the integral of dt (u - w)
@@ -130,7 +169,7 @@ void add_convection(const Cell<n>& cell, CellSystem<n>& system) {
         past += point.volume * (flown - mean_moved);
         for (std::size_t i = 0; i < n; ++i) {
             const double by_flow = dot(flown, point.volume_gradient[i]);
-            system.row_sum[i] -= cell.capacity * (by_flow - dot(mean_moved, mean_volume_gradient[k][i]));
+            carrying.row_sum[i] -= by_flow - dot(mean_moved, mean_volume_gradient[k][i]);
         }
         for (std::size_t j = 0; j < n; ++j) {
             Vec3 product;  // the mean of phi_j dt w
@@ -138,27 +177,59 @@ void add_convection(const Cell<n>& cell, CellSystem<n>& system) {
             lumped[j] += point.volume * (means.value[j] * moved[j] - product);
             for (std::size_t i = 0; i < n; ++i) {
                 const double by_flow = means.value[j] * dot(flown, point.volume_gradient[i]);
-                system.matrix[i][j] -=
-                    cell.capacity * (by_flow - dot(product, mean_volume_gradient[k][i]));
+                carrying.matrix[i][j] -= by_flow - dot(product, mean_volume_gradient[k][i]);
             }
         }
     }
+    if (cell.low) return;
+    const std::array<Vec3, n> mean_gradient = mean_gradients<n>(cell.now);
     for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) carrying.matrix[i][j] -= dot(lumped[i], mean_gradient[j]);
+    add_upwinding(cell, mean_gradient, past / (cell.dt * total_volume<n>(cell.now)), carrying, system);
+}
+
+/// The slope of the chord of the enthalpy between two corners, at their guesses.
+template <std::size_t n>
+double chord(const Cell<n>& cell, std::size_t i, std::size_t j) {
+    constexpr double distinct = 1e-6;  // [-] of the temperature: nearer to each other, rounding is seen
+    const double between = cell.guess[j] - cell.guess[i];
+    if (cell.proportional || !(std::abs(between) > distinct * std::abs(cell.guess[i])))
+        return 0.5 * (cell.slope[i] + cell.slope[j]);
+    return (cell.enthalpy[j] - cell.enthalpy[i]) / between;
+}
+
+/// What is carried, on temperatures: differences by chords, what is there by Newton's method.
+template <std::size_t n>
+void add_carrying(const Cell<n>& cell, const Carrying<n>& carrying, CellSystem<n>& system) {
+    for (std::size_t i = 0; i < n; ++i) {
+        system.row_sum[i] += carrying.row_sum[i] * cell.slope[i];
+        if (!cell.proportional)
+            system.right[i] += carrying.row_sum[i] * (cell.slope[i] * cell.guess[i] - cell.enthalpy[i]);
         for (std::size_t j = 0; j < n; ++j)
-            system.matrix[i][j] -= cell.capacity * dot(lumped[i], mean_gradient[j]);
-    add_upwinding(cell, mean_gradient, past / (cell.dt * total_volume<n>(cell.now)), system);
+            if (i != j) system.matrix[i][j] += carrying.matrix[i][j] * chord(cell, i, j);
+    }
 }
 
 template <std::size_t n, class Name>
 CellSystem<n> system_of(const HeatStep& step, const Name& name) {
     const Cell<n> cell = gather<n>(step, name);
-    CellSystem<n> system = conduction(cell);
+    Carrying<n> carrying;
+    CellSystem<n> system;
+    add_mass(cell, carrying, system);
+    add_conduction(cell, system);
     const bool flows = !step.potential[cell_region(step.current, name)].empty();
-    if (flows || cell.x0 != cell.x1) add_convection(cell, system);
+    if (flows || cell.x0 != cell.x1) add_convection(cell, carrying, system);
+    add_carrying(cell, carrying, system);
     return system;
 }
 
 }  // namespace
+
+Array<Region, Enthalpy> enthalpy_curves(const HeatOptions& options) {
+    Array<Region, Enthalpy> curves;
+    for (const HeatRegion& region : options.regions) curves.push_back(Enthalpy(region.material));
+    return curves;
+}
 
 CellSystem<4> cell_system(const HeatStep& step, Tet t) {
     return system_of<4>(step, t);

@@ -1,193 +1,43 @@
 // One step of the heat equation: assembly and solution of the system derived in heat.h, from what the cells
-// add to it (heat_cell.h), the fluxes and the values at the boundary.
+// add to it (heat_cell.h) and what acts from outside (heat_conditions.h), within bounds (bounded.h).
 
 #include <kropla/base/error.h>
-#include <kropla/mesh/cells.h>
+#include "simulate/bounded.h"
 #include "simulate/carried.h"
 #include "simulate/flow_potential.h"
 #include "simulate/heat_cell.h"
+#include "simulate/heat_conditions.h"
+#include "simulate/heat_start.h"
 #include "simulate/solver.h"
-#include "simulate/step_mean.h"
 #include "simulate/stop.h"
 #include "simulate/surface_flux.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
 namespace kropla {
 namespace {
 
-/// What sources and fluxes act over.
-struct StepInTime {
-    const Mesh& before;
-    const Mesh& current;
-    double begin, dt;  // [s]
-    const Watch* watch;
-};
-
-const Quantity& source_of(const HeatOptions& options, Region region) {
-    return options.regions[static_cast<std::size_t>(region.value)].source;
-}
-
-/// Each vertex of the cells once, in order.
-std::vector<Vertex> vertices_of(const Mesh& mesh, const Cells& cells) {
-    std::vector<Vertex> vertices;
-    Array<Vertex, char> seen(mesh.position.size(), 0);
-    for_each_cell(cells, [&](const auto& cell) {
-        for (Vertex v : cell_vertices(mesh, cell))
-            if (!std::exchange(seen[v], 1)) vertices.push_back(v);
-    });
-    return vertices;
-}
-
-/// The means over the step of a quantity at these vertices; elsewhere zero.
-Array<Vertex, double> means_at(const StepInTime& step, const Quantity& quantity,
-                               const std::vector<Vertex>& vertices, const std::string& key) {
-    std::vector<Way> ways;
-    for (Vertex v : vertices) ways.push_back({step.before.position[v], step.current.position[v]});
-    const std::vector<double> means = step_means(quantity, ways, step.begin, step.dt, key, step.watch);
-    Array<Vertex, double> at(step.current.position.size(), 0.0);
-    for (std::size_t k = 0; k < vertices.size(); ++k) at[vertices[k]] = means[k];
-    return at;
-}
-
-/// The sources of each region, at its vertices.
-Array<Region, Array<Vertex, double>> mean_sources(const StepInTime& step, const HeatOptions& options) {
-    Array<Region, Array<Vertex, double>> source(options.regions.size());
-    for (Region r : source.indices()) {
-        if (!source_of(options, r)) continue;
-        source[r] = means_at(step, source_of(options, r),
-                             vertices_of(step.current, living_cells(step.current, r)),
-                             region_key(options, static_cast<std::size_t>(r.value)) + ".source");
-    }
-    return source;
-}
-
-/// Calls `visit(tet, corner, face)` for the facets on faces of the given kind.
-template <class Visit>
-void for_each_facet(const Mesh& mesh, const std::vector<Tet>& cells, const HeatOptions& options,
-                    HeatFace::Kind kind, const Visit& visit) {
-    for (Tet t : cells) {
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Patch patch = mesh.patch[t][corner];
-            if (!patch.exists() || mesh.neighbour[t][corner].exists()) continue;
-            const auto face = static_cast<std::size_t>(patch.value);
-            if (face < options.faces.size() && options.faces[face].kind == kind) visit(t, corner, face);
-        }
-    }
-}
-
-/// The fluxes through faces, at their vertices.
-std::array<Array<Vertex, double>, 6> mean_fluxes(const StepInTime& step, const std::vector<Tet>& cells,
-                                                 const HeatOptions& options) {
-    std::array<std::vector<Vertex>, 6> vertices;
-    for_each_facet(step.current, cells, options, HeatFace::Kind::flux,
-                   [&](Tet t, std::size_t corner, std::size_t face) {
-                       for (int k : tet_facets[corner])
-                           vertices[face].push_back(step.current.tets[t][static_cast<std::size_t>(k)]);
-                   });
-    std::array<Array<Vertex, double>, 6> flux;
-    for (std::size_t face = 0; face < flux.size(); ++face) {
-        if (vertices[face].empty()) continue;
-        std::ranges::sort(vertices[face]);
-        const auto repeated = std::ranges::unique(vertices[face]);
-        vertices[face].erase(repeated.begin(), repeated.end());
-        flux[face] = means_at(step, options.faces[face].quantity, vertices[face], face_key(face) + ".flux");
-    }
-    return flux;
-}
-
-void add_fluxes(const Mesh& mesh, const std::vector<Tet>& cells, const HeatOptions& options, double dt,
-                const std::array<Array<Vertex, double>, 6>& flux, const Numbering& numbering,
-                LinearSystem& system) {
-    const auto add = [&](Tet t, std::size_t corner, std::size_t face) {
-        const double area = 3 * norm(linear_tet(corners(mesh, t)).volume_gradient[corner]);
-        for (int k : tet_facets[corner]) {
-            const Vertex v = mesh.tets[t][static_cast<std::size_t>(k)];
-            add_to_right(system, numbering.row[v], dt * area / 3 * flux[face][v]);
-        }
-    };
-    for_each_facet(mesh, cells, options, HeatFace::Kind::flux, add);
-}
-
-/// The face whose value holds at each vertex: the first if there are several, -1 if there is none.
-Array<Vertex, int> faces_with_values(const Mesh& mesh, const HeatOptions& options) {
-    Array<Vertex, int> face_at(mesh.position.size(), -1);
-    const auto note = [&](Tet t, std::size_t corner, std::size_t face) {
-        for (int k : tet_facets[corner]) {
-            int& at = face_at[mesh.tets[t][static_cast<std::size_t>(k)]];
-            if (at < 0 || static_cast<int>(face) < at) at = static_cast<int>(face);
-        }
-    };
-    for_each_facet(mesh, living_cells(mesh).tets, options, HeatFace::Kind::value, note);
-    return face_at;
-}
-
-struct FixedValue {
-    Vertex vertex;
-    double value;  // [K]
-};
-
-std::vector<FixedValue> fixed_values(const Mesh& mesh, const HeatOptions& options, double time) {
-    const Array<Vertex, int> face_at = faces_with_values(mesh, options);
-    std::vector<FixedValue> fixed;
-    for (Vertex v : face_at.indices()) {
-        if (face_at[v] < 0) continue;
-        const auto face = static_cast<std::size_t>(face_at[v]);
-        fixed.push_back(
-            {v, value_at(options.faces[face].quantity, mesh.position[v], time, face_key(face) + ".value")});
-    }
-    return fixed;
-}
-
-/// What acts on a step from outside. Evaluated everywhere, not on the rank's cells alone: if a quantity is not
-/// finite, all ranks throw.
-struct Boundary {
-    std::array<Array<Vertex, double>, 6> flux;  // of each face, its mean over the step [W/m^2], or empty
-    std::vector<FixedValue> fixed;              // at the step's end
-};
-
-LinearSystem heat_system(const HeatStep& step, const Cells& cells, const Numbering& numbering, const Ranks& ranks,
-                         const Boundary& boundary) {
-    const Cells mine = cells_of_rank(step.current, cells, numbering, ranks.rank);
-    LinearSystem system = empty_system(step.current, mine, numbering, ranks.rank);
-    for_each_cell(mine, [&](const auto& cell) {
-        heed(ranks.watch);
-        const auto part = cell_system(step, cell);
-        const auto vertices = cell_vertices(step.current, cell);
-        add_to(system, numbering, vertices, part.matrix);
-        for (std::size_t i = 0; i < vertices.size(); ++i) {
-            add_to_right(system, numbering.row[vertices[i]], part.right[i]);
-            add_to_row_sum(system, numbering.row[vertices[i]], part.row_sum[i]);
-            add_to_held(system, numbering.row[vertices[i]], part.held[i]);
-        }
-    });
-    add_fluxes(step.current, cells.tets, step.options, step.dt, boundary.flux, numbering, system);
-    for (std::size_t r = 0; r < system.guess.size(); ++r) {
-        const auto row = static_cast<std::size_t>(system.first_row) + r;
-        system.guess[r] = step.old_temperature[numbering.vertex[row]];
-    }
-    for (const FixedValue& fixed : boundary.fixed)
-        fix_unknown(system, numbering.row[fixed.vertex], fixed.value);
-    return system;
-}
+constexpr int most_passes = 100;   // of what is not linear, between two looks at bounds
+constexpr int most_lowerings = 8;  // looks at bounds, before all is of low order
+constexpr double noticeable = 1e-3;  // [-] of the range: a new extremum that is worth a second solution
+constexpr double of_range = 1e-11;   // [-] of the range, and
+constexpr double of_largest = 1e-12; // [-] of the largest temperature: what a solution leaves
+constexpr double settled = 1e-12;  // [-] of the largest temperature: a pass that changes less is the last
 
 std::vector<Region> regions_that(Carried move, const HeatOptions& options) {
     std::vector<Region> regions;
-    for (std::size_t r = 0; r < options.regions.size(); ++r) {
+    for (std::size_t r = 0; r < options.regions.size(); ++r)
         if (options.regions[r].carried == move) regions.push_back(Region(r));
-    }
     return regions;
 }
 
-Array<Region, Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& current,
-                                                const HeatOptions& options) {
+Array<Region, Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& current, const HeatOptions& options) {
     Array<Region, Array<Vertex, Vec3>> carried(options.regions.size());
-    for (Region body : regions_that(Carried::with_mesh, options)) {
-        carried[body] = carried_along(before, current, body);
-    }
+    for (Region body : regions_that(Carried::with_mesh, options)) carried[body] = carried_along(before, current, body);
     return carried;
 }
 
@@ -195,15 +45,13 @@ Array<Region, Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& 
 struct Signs {
     bool cools = false, heats = false;
 
-    void note(const Array<Vertex, double>& values) {
-        for (double value : values) {
-            cools = cools || value < 0;
-            heats = heats || value > 0;
-        }
+    void note(double value) {
+        cools = cools || value < 0;
+        heats = heats || value > 0;
     }
 };
 
-HeatExtremes extremes(const HeatStep& step, const std::vector<Vertex>& vertices, const Boundary& boundary,
+HeatExtremes extremes(const HeatStep& step, const std::vector<Vertex>& vertices, const HeatConditions& conditions,
                       const Array<Vertex, double>& after) {
     const Vertex first = vertices.front();
     const double start = step.old_temperature[first];
@@ -218,16 +66,334 @@ HeatExtremes extremes(const HeatStep& step, const std::vector<Vertex>& vertices,
         if (after[v] < found.least.value) found.least = {after[v], step.current.position[v]};
         if (after[v] > found.most.value) found.most = {after[v], step.current.position[v]};
     }
-    for (const FixedValue& fixed : boundary.fixed) widen(fixed.value);
+    for (const FixedValue& fixed : conditions.fixed) widen(fixed.value);
     Signs signs;
-    for (const auto& source : step.source) signs.note(source);
-    for (const auto& flux : boundary.flux) signs.note(flux);
+    for (const auto& source : conditions.source)
+        for (double value : source) signs.note(value);
+    for (const BoundaryShare& share : conditions.shares) {
+        signs.note(share.flux);
+        if (share.exchanges()) widen(share.ambient);
+    }
     if (signs.cools) found.lower = -INFINITY;
     if (signs.heats) found.upper = INFINITY;
     return found;
 }
 
+/// The step while it is solved.
+class HeatSolution {
+public:
+    HeatSolution(const Ranks& ranks, HeatStep& step, const HeatConditions& conditions)
+        : ranks_(ranks), step_(step), conditions_(conditions),
+          pattern_(make_pattern(step.current, living_cells(step.current), ranks)), after_(step.old_temperature),
+          marked_(vertices().size(), 0), allowance_(pattern_.rows.count()), linear_(is_linear()) {
+        for (const FixedValue& fixed : conditions.fixed) after_[fixed.vertex] = fixed.value;
+        fill_old_enthalpies();
+    }
+
+    void solve_all() {
+        const std::vector<double> before = per_row(step_.old_temperature);
+        for (int looks = 1;; ++looks) {
+            settle();
+            if (!mark_extrema(ranks_, pattern_, before, per_row(after_), allowance_, negligible(), marked_)) break;
+            if (looks == most_lowerings) std::ranges::fill(marked_, 1);
+            lower_marked();
+        }
+        exchanged_.assign(pattern_.rows.column.size(), 0.0);
+        if (!linear_) return;
+        const HeatExtremes bounds = extremes(step_, vertices(), conditions_, after_);
+        keep_bound(bounds.lower, 1);
+        keep_bound(bounds.upper, -1);
+    }
+
+    [[nodiscard]] const Array<Vertex, double>& after() const { return after_; }
+
+    [[nodiscard]] HeatReport report() const {
+        const Assembled assembled{pattern_, systems_, diffusion_, exchanged_, after_};
+        HeatReport report;
+        report.iterations = iterations_;
+        report.passes = passes_;
+        report.diffused = static_cast<std::size_t>(std::ranges::count(marked_, 1));
+        report.error = error_;
+        report.surfaces = surface_fluxes(ranks_, step_.current, assembled, step_.dt);
+        report.extremes = extremes(step_, vertices(), conditions_, after_);
+        report.balance = balance(assembled);
+        return report;
+    }
+
+private:
+    [[nodiscard]] const std::vector<Vertex>& vertices() const { return pattern_.numbering.vertex; }
+    [[nodiscard]] Vertex vertex_of(std::size_t owned_row) const {
+        return vertices()[static_cast<std::size_t>(pattern_.rows.first_row) + owned_row];
+    }
+    [[nodiscard]] std::vector<double> per_row(const Array<Vertex, double>& values) const {
+        std::vector<double> row;
+        row.reserve(vertices().size());
+        for (Vertex v : vertices()) row.push_back(values[v]);
+        return row;
+    }
+    void per_vertex(Array<Vertex, double>& values, const auto& value_of) const {
+        values.resize(after_.size(), 0.0);
+        for (Vertex v : vertices()) values[v] = value_of(v);
+    }
+
+    [[nodiscard]] bool is_linear() const {
+        for (Region r : step_.enthalpy.indices())
+            if (!step_.enthalpy[r].proportional() || !material(r).conductivity.constant()) return false;
+        return std::ranges::none_of(conditions_.shares, [](const BoundaryShare& share) { return share.radiation > 0; });
+    }
+    [[nodiscard]] const HeatMaterial& material(Region r) const {
+        return step_.options.regions[static_cast<std::size_t>(r.value)].material;
+    }
+
+    void fill_old_enthalpies() {
+        for (Region r : step_.enthalpy.indices())
+            if (const Enthalpy& h = step_.enthalpy[r]; !h.proportional())
+                per_vertex(step_.material[r].old, [&](Vertex v) { return h(step_.old_temperature[v]); });
+    }
+
+    void lower_marked() {
+        fresh_ = Array<Vertex, char>(after_.size(), 0);
+        step_.low.resize(after_.size(), 0);
+        for (std::size_t r = 0; r < marked_.size(); ++r) {
+            if (marked_[r] == 0) continue;
+            fresh_[vertices()[r]] = step_.low[vertices()[r]] == 0;
+            step_.low[vertices()[r]] = 1;
+        }
+    }
+
+    /// By how much a value may be a new extremum, before it is cared for: what is not linear cannot be repaired.
+    [[nodiscard]] double negligible() const {
+        double least = INFINITY, most = -INFINITY;
+        for (Vertex v : vertices()) {
+            least = std::min({least, step_.old_temperature[v], after_[v]});
+            most = std::max({most, step_.old_temperature[v], after_[v]});
+        }
+        const double share = linear_ ? noticeable : of_range;
+        return share * (most - least) + of_largest * std::max(std::abs(least), std::abs(most));
+    }
+
+    void keep_bound(double bound, double side) {
+        if (!std::isfinite(bound)) return;
+        std::vector<double> values = per_row(after_);
+        const Repair done = repair(ranks_, pattern_, capacity_, bound, side, values);
+        for (std::size_t k = 0; k < exchanged_.size(); ++k) exchanged_[k] += done.gained[k];
+        for (std::size_t r = 0; r < values.size(); ++r) after_[vertices()[r]] = values[r];
+    }
+
+    /// Solves; if the step is not linear, again and again about what came out.
+    void settle() {
+        for (int pass = 1;; ++pass) {
+            take_as_guess();
+            ask_cells(pattern_.cells, [&](const auto& cell) { return cell_system(step_, cell); },
+                      [&](const auto& cell) { return !linear_ || systems_are_to_change(cell); }, systems_, ranks_.watch);
+            const LinearSystem system = assembled();
+            heed(ranks_);  // a rank that was stopped in there is met before anything is done together
+            const SolverChoice choice{.name = "heat", .preconditioner = preconditioner_for(ranks_, system)};
+            const Solution solution = solve(ranks_, system, choice);
+            iterations_ = std::max(iterations_, solution.iterations);
+            error_ = solution.error;
+            ++passes_;
+            const double change = take(solution.value);
+            if (linear_ || change <= settled) return;
+            if (pass == most_passes)
+                throw SolverError("heat: the temperature does not settle, it still changes by " + std::to_string(change) +
+                                  " of the largest in pass " + std::to_string(pass));
+        }
+    }
+
+    template <class Cell>
+    [[nodiscard]] bool systems_are_to_change(const Cell& cell) const {
+        return fresh_.empty() || std::ranges::any_of(cell_vertices(step_.current, cell),
+                                                     [&](Vertex v) { return fresh_[v] != 0; });
+    }
+
+    /// Evaluates what depends on the temperature.
+    void take_as_guess() {
+        if (linear_) return;
+        step_.guess = after_;
+        for (Region r : step_.material.indices()) {
+            MaterialState& state = step_.material[r];
+            if (const Property& k = material(r).conductivity; !k.constant())
+                per_vertex(state.conductivity, [&](Vertex v) { return k(after_[v]); });
+            if (const Enthalpy& h = step_.enthalpy[r]; !h.proportional()) {
+                per_vertex(state.enthalpy, [&](Vertex v) { return h(after_[v]); });
+                per_vertex(state.slope, [&](Vertex v) { return h.slope(after_[v]); });
+            }
+        }
+    }
+
+    /// Takes the solution. Returns by how much it differs from the guess, by the largest temperature.
+    double take(const std::vector<double>& solution) {
+        double change = 0, largest = 0;
+        for (std::size_t r = 0; r < solution.size(); ++r) {
+            double& value = after_[vertices()[r]];
+            change = std::max(change, std::abs(solution[r] - value));
+            largest = std::max(largest, std::abs(solution[r]));
+            value = solution[r];
+        }
+        return largest > 0 ? change / largest : 0;
+    }
+
+    [[nodiscard]] LinearSystem assembled() {
+        LinearSystem system(pattern_.rows);
+        add_cells(pattern_, systems_, system);
+        note_capacities(system);
+        diffusion_ = add_diffusion(pattern_, systems_, marked_, system);
+        allowance_ = Allowance(pattern_.rows.count());
+        allow_loads(system);
+        add_shares(system);
+        for (std::size_t r = 0; r < system.guess.size(); ++r) system.guess[r] = after_[vertex_of(r)];
+        for (const FixedValue& fixed : conditions_.fixed) {
+            const int row = pattern_.numbering.row[fixed.vertex];
+            if (system.owns(row)) allowance_.fixed[system.local(row)] = 1;
+            fix_unknown(system, row, fixed.value);
+        }
+        return system;
+    }
+
+    /// What each row of all ranks holds per kelvin, but for those that are fixed.
+    void note_capacities(const LinearSystem& system) {
+        capacity_.assign(vertices().size(), 0.0);
+        std::ranges::copy(system.held, capacity_.begin() + pattern_.rows.first_row);
+        MPI_Allreduce(MPI_IN_PLACE, capacity_.data(), static_cast<int>(capacity_.size()), MPI_DOUBLE, MPI_SUM,
+                      ranks_.communicator);
+        for (const FixedValue& fixed : conditions_.fixed)
+            capacity_[static_cast<std::size_t>(pattern_.numbering.row[fixed.vertex])] = 0;
+    }
+
+    /// What comes from outside may raise a value beyond those around it: by all of it in the vertex's own share.
+    void allow(std::size_t row, double load, double held) {
+        const double rise = linear_ && held > 0 ? load / held : load == 0 ? 0 : std::copysign(INFINITY, load);
+        (rise > 0 ? allowance_.above : allowance_.below)[row] += std::abs(rise);
+    }
+    void allow_loads(const LinearSystem& system) {
+        for (std::size_t r = 0; r < pattern_.rows.count(); ++r) {
+            double load = 0;
+            for (const auto& at : pattern_.tets.of(r)) load += systems_.tets[at.cell].load[at.corner];
+            for (const auto& at : pattern_.prisms.of(r)) load += systems_.prisms[at.cell].load[at.corner];
+            allow(r, load, system.row_sum[r]);
+        }
+    }
+
+    void add_shares(LinearSystem& system) {
+        for (const BoundaryShare& share : conditions_.shares) {
+            const int row = pattern_.numbering.row[share.vertex];
+            if (!system.owns(row)) continue;
+            const std::size_t r = system.local(row);
+            allow(r, step_.dt * share.flux, system.row_sum[r]);
+            if (share.exchanges()) {
+                allowance_.least[r] = std::min(allowance_.least[r], share.ambient);
+                allowance_.most[r] = std::max(allowance_.most[r], share.ambient);
+            }
+            const double guess = after_[share.vertex], rise = step_.dt * share.slope(guess);
+            system.row_sum[r] += rise;
+            system.held[r] += rise;
+            system.right[r] += step_.dt * (share.flux - share.given(guess)) + rise * guess;
+        }
+    }
+
+    /// What came in at this vertex but is not accounted for by the cells and what acts on it: what keeps it fixed [J].
+    [[nodiscard]] HeatBalance balance(const Assembled& assembled) const {
+        HeatBalance sum;
+        sum.before = energy(step_.before, step_.options, step_.old_temperature);
+        sum.after = energy(step_.current, step_.options, after_);
+        sum.surfaces.assign(step_.options.surfaces.size(), 0.0);
+        sum.sources.assign(step_.options.regions.size(), 0.0);
+        sum.held.assign(step_.options.regions.size(), 0.0);
+        Array<Vertex, double> acting(after_.size(), 0.0);  // by conditions [J]
+        for (const BoundaryShare& share : conditions_.shares) {
+            const double in = step_.dt * (share.flux - share.given(after_[share.vertex]));
+            acting[share.vertex] += in;
+            if (share.door.kind == Door::Kind::face) sum.faces[share.door.number] += in;
+            else sum.surfaces[share.door.number - 1] += in;
+        }
+        for_each_cell(living_cells(step_.current), [&](const auto& cell) {
+            const Region region = cell_region(step_.current, cell);
+            const auto source = at_corners(conditions_.source[region], cell_vertices(step_.current, cell));
+            const auto points = cell_points(corners(step_.current, cell));
+            for (std::size_t k = 0; k < points.size(); ++k)
+                sum.sources[static_cast<std::size_t>(region.value)] += step_.dt * points[k].volume * mean_value(k, source);
+        });
+        std::vector<double> kept(conditions_.fixed.size(), 0.0);
+        for (std::size_t k = 0; k < kept.size(); ++k) {
+            const Vertex v = conditions_.fixed[k].vertex;
+            const int row = pattern_.numbering.row[v] - pattern_.rows.first_row;
+            if (row < 0 || static_cast<std::size_t>(row) >= pattern_.rows.count()) continue;
+            kept[k] = gained_at(assembled, step_.current, static_cast<std::size_t>(row), [](const auto&) { return true; },
+                                [](Vertex) { return true; }) - acting[v];
+        }
+        MPI_Allreduce(MPI_IN_PLACE, kept.data(), static_cast<int>(kept.size()), MPI_DOUBLE, MPI_SUM, ranks_.communicator);
+        for (std::size_t k = 0; k < kept.size(); ++k) {
+            const Door door = conditions_.fixed[k].door;
+            (door.kind == Door::Kind::face ? sum.faces[door.number] : sum.held[door.number]) += kept[k];
+        }
+        return sum;
+    }
+
+    const Ranks& ranks_;
+    HeatStep& step_;
+    const HeatConditions& conditions_;
+    Pattern pattern_;
+    Array<Vertex, double> after_;
+    std::vector<char> marked_;    // rows of low order
+    Array<Vertex, char> fresh_;   // that became so last; empty: none has
+    CellSystems systems_;
+    std::vector<double> diffusion_;  // along each coupling of the rank's rows
+    std::vector<double> exchanged_;  // along it, by repair [J]
+    std::vector<double> capacity_;   // of each row of all ranks [J/K]
+    Allowance allowance_;
+    bool linear_;
+    int iterations_ = 0, passes_ = 0;
+    double error_ = 0;
+};
+
+std::vector<Region> regions_of(const HeatOptions& options) {
+    std::vector<Region> regions;
+    for (std::size_t r = 0; r < options.regions.size(); ++r) regions.push_back(Region(r));
+    return regions;
+}
+
+/// A time [s] after which nothing is left of how a steady state began: heat passes the domain ten million times.
+double long_enough(const Mesh& mesh, const HeatOptions& options) {
+    Vec3 least{INFINITY, INFINITY, INFINITY}, most = -1.0 * least;
+    for_each_cell(living_cells(mesh), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) {
+            for (int axis = 0; axis < 3; ++axis) {
+                least[axis] = std::min(least[axis], mesh.position[v][axis]);
+                most[axis] = std::max(most[axis], mesh.position[v][axis]);
+            }
+        }
+    });
+    double slowest = 0;  // [s/m^2]
+    for (const HeatRegion& region : options.regions) {
+        const Enthalpy enthalpy(region.material);
+        for (double k : region.material.conductivity.values())
+            slowest = std::max(slowest, enthalpy.slope(region.initial.value) / k);
+    }
+    return 1e7 * slowest * squared_norm(most - least);
+}
+
+HeatStep heat_step(const Mesh& before, const Mesh& current, const HeatOptions& options, const HeatConditions& conditions,
+                   const NodalField& temperature, double dt) {
+    return {.before = before,
+            .current = current,
+            .options = options,
+            .old_temperature = temperature.values,
+            .potential = Array<Region, Array<Vertex, double>>(options.regions.size()),
+            .carried = carry_bodies(before, current, options),
+            .source = conditions.source,
+            .dt = dt,
+            .enthalpy = enthalpy_curves(options),
+            .material = Array<Region, MaterialState>(options.regions.size())};
+}
+
 }  // namespace
+
+double HeatBalance::brought() const {
+    double sum = std::accumulate(faces.begin(), faces.end(), 0.0);
+    for (const auto* parts : {&surfaces, &sources, &held}) sum = std::accumulate(parts->begin(), parts->end(), sum);
+    return sum;
+}
 
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt) {
@@ -235,30 +401,35 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
     if (!(dt > 0)) throw CaseError("heat: the step must be positive, got " + std::to_string(dt) + " s");
     const DisplacedFlow flow =
         solve_displaced_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt);
-    const Cells cells = living_cells(current);
-    const StepInTime in_time{before, current, t, dt, ranks.watch};
-    const Boundary boundary{mean_fluxes(in_time, cells.tets, options), fixed_values(current, options, t + dt)};
-    const Numbering numbering = number_vertices(current, cells, ranks.count);
-    const HeatStep step{.before = before,
-                        .current = current,
-                        .options = options,
-                        .old_temperature = temperature.values,
-                        .potential = flow.potential,
-                        .carried = carry_bodies(before, current, options),
-                        .source = mean_sources(in_time, options),
-                        .dt = dt};
-    const LinearSystem system = heat_system(step, cells, numbering, ranks, boundary);
-    heed(ranks);  // a rank that was stopped in there is met before anything is done together
-    const SolverChoice choice{.name = "heat", .preconditioner = preconditioner_for(ranks, system)};
-    const Solution solution = solve(ranks, system, choice);
-    Array<Vertex, double> after = temperature.values;
-    for (std::size_t r = 0; r < numbering.vertex.size(); ++r) {
-        after[numbering.vertex[r]] = solution.value[r];
-    }
-    HeatReport report{solution.iterations, solution.error, flow.iterations,
-                      surface_fluxes(step, cells, after), extremes(step, numbering.vertex, boundary, after)};
-    temperature.values = std::move(after);
+    const HeatConditions conditions = heat_conditions(before, current, options, t, dt, ranks.watch);
+    HeatStep step = heat_step(before, current, options, conditions, temperature, dt);
+    step.potential = flow.potential;
+    HeatSolution solution(ranks, step, conditions);
+    solution.solve_all();
+    HeatReport report = solution.report();
+    report.potential_iterations = flow.iterations;
+    temperature.values = solution.after();
     return report;
+}
+
+void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, NodalField& field) {
+    const double dt = long_enough(mesh, options);
+    HeatConditions conditions = heat_conditions(mesh, mesh, options, 0, dt, ranks.watch);
+    Array<Vertex, char> known(mesh.position.size(), 0);
+    for (const FixedValue& fixed : conditions.fixed) known[fixed.vertex] = 1;
+    for (Region r : regions_of(options)) {
+        if (options.regions[static_cast<std::size_t>(r.value)].initial.steady) continue;
+        for_each_cell(living_cells(mesh, r), [&](const auto& cell) {
+            for (Vertex v : cell_vertices(mesh, cell)) {
+                if (std::exchange(known[v], 1) != 0) continue;
+                conditions.fixed.push_back({v, field.values[v], {Door::Kind::held, static_cast<std::size_t>(r.value)}});
+            }
+        });
+    }
+    HeatStep step = heat_step(mesh, mesh, options, conditions, field, dt);
+    HeatSolution solution(ranks, step, conditions);
+    solution.solve_all();
+    field.values = solution.after();
 }
 
 }  // namespace kropla

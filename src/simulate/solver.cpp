@@ -101,9 +101,9 @@ OwnedMat make_matrix(const Ranks& ranks, const LinearSystem& system, const std::
     for (std::size_t r = 0; r < scale.size(); ++r) {
         double diagonal = system.row_sum[r];
         std::size_t own = 0;
-        for (PetscInt k = system.begin[r]; k < system.begin[r + 1]; ++k) {
+        for (PetscInt k = system.rows.begin[r]; k < system.rows.begin[r + 1]; ++k) {
             const auto place = static_cast<std::size_t>(k);
-            if (system.column[place] == system.first_row + static_cast<PetscInt>(r)) {
+            if (system.rows.column[place] == system.rows.first_row + static_cast<PetscInt>(r)) {
                 own = place;
             } else {
                 diagonal -= system.value[place];
@@ -115,9 +115,9 @@ OwnedMat make_matrix(const Ranks& ranks, const LinearSystem& system, const std::
     Mat matrix = nullptr;
     check(MatCreate(ranks.communicator, &matrix));
     OwnedMat owned(matrix);
-    check(MatSetSizes(matrix, system.rows(), system.rows(), all_rows, all_rows));
+    check(MatSetSizes(matrix, system.count(), system.count(), all_rows, all_rows));
     check(MatSetType(matrix, MATAIJ));
-    const PetscInt *begin = system.begin.data(), *column = system.column.data();
+    const PetscInt *begin = system.rows.begin.data(), *column = system.rows.column.data();
     check(MatSeqAIJSetPreallocationCSR(matrix, begin, column, scaled.data()));
     check(MatMPIAIJSetPreallocationCSR(matrix, begin, column, scaled.data()));
     return owned;
@@ -155,13 +155,13 @@ Residual residual(const Ranks& ranks, const LinearSystem& system, const Unknown&
     double error = 0, most_left = 0;
     std::vector<double> rest(system.right.size());
     for (std::size_t r = 0; r < rest.size(); ++r) {
-        const std::size_t own = static_cast<std::size_t>(system.first_row) + r;
+        const std::size_t own = static_cast<std::size_t>(system.rows.first_row) + r;
         double sum = system.right[r] - system.row_sum[r] * x.high[own] - system.row_sum[r] * x.low[own];
         double size = std::abs(system.right[r]) + std::abs(system.row_sum[r]) * most + system.negligible[r];
-        for (PetscInt k = system.begin[r]; k < system.begin[r + 1]; ++k) {
+        for (PetscInt k = system.rows.begin[r]; k < system.rows.begin[r + 1]; ++k) {
             const auto place = static_cast<std::size_t>(k);
             const double exchanged =
-                system.value[place] * x.difference(static_cast<std::size_t>(system.column[place]), own);
+                system.value[place] * x.difference(static_cast<std::size_t>(system.rows.column[place]), own);
             sum -= exchanged;
             size += std::abs(exchanged);
         }
@@ -181,8 +181,8 @@ bool stuck(const Residual& before, const Residual& after) {
 /// What a row's sum is known to, at best.
 double reachable(const Ranks& ranks, const LinearSystem& system) {
     PetscInt longest = 0;
-    for (std::size_t r = 0; r + 1 < system.begin.size(); ++r)
-        longest = std::max(longest, system.begin[r + 1] - system.begin[r]);
+    for (std::size_t r = 0; r + 1 < system.rows.begin.size(); ++r)
+        longest = std::max(longest, system.rows.begin[r + 1] - system.rows.begin[r]);
     return rounding * (largest(ranks, static_cast<double>(longest)) + 2);
 }
 
@@ -287,12 +287,13 @@ private:
 
     /// BoomerAMG has no other way in than options; those that the user gave stand.
     static void set_multigrid(const SolverChoice& choice) {
-        constexpr std::array<std::array<const char*, 2>, 7> defaults = {
+        const char* fast = choice.potential ? "1" : "0";  // levels of fast coarsening: cheaper, but worse for contrasts
+        const std::array<std::array<const char*, 2>, 7> defaults = {
             {{"coarsen_type", "HMIS"},
              {"interp_type", "ext+i"},
              {"P_max", "4"},
-             {"strong_threshold", "0.5"},
-             {"agg_nl", "1"},
+             {"strong_threshold", "0.7"},
+             {"agg_nl", fast},
              {"relax_type_down", "SOR/Jacobi"},  // one sweep each way, symmetric together
              {"relax_type_up", "backward-SOR/Jacobi"}}};
         for (const auto& [name, value] : defaults) {
@@ -337,21 +338,16 @@ std::vector<double> everywhere(const Ranks& ranks, const std::vector<double>& mi
     return Gathering(vector.get())(vector.get());
 }
 
-/// Enough of them for two levels of any multigrid.
-LinearSystem chains_of_unknowns() {
-    constexpr PetscInt rows = 512;
-    LinearSystem system;
-    for (PetscInt r = 0; r < rows; ++r) {
-        system.begin.push_back(static_cast<PetscInt>(system.column.size()));
-        for (PetscInt c = std::max<PetscInt>(r - 1, 0); c <= std::min<PetscInt>(r + 1, rows - 1); ++c) {
-            system.column.push_back(c);
-            system.value.push_back(c == r ? 0 : -1);
-        }
+/// Chains of unknowns, each bound to the one before and the one after: enough for two levels of any multigrid.
+SparseRows chain() {
+    constexpr PetscInt count = 512;
+    SparseRows rows;
+    for (PetscInt r = 0; r < count; ++r) {
+        for (PetscInt c = std::max<PetscInt>(r - 1, 0); c <= std::min<PetscInt>(r + 1, count - 1); ++c)
+            rows.column.push_back(c);
+        rows.begin.push_back(static_cast<PetscInt>(rows.column.size()));
     }
-    system.begin.push_back(static_cast<PetscInt>(system.column.size()));
-    system.row_sum.assign(rows, 0.1);
-    system.right = system.guess = system.negligible = system.held = std::vector<double>(rows, 0.0);
-    return system;
+    return rows;
 }
 
 }  // namespace
@@ -394,7 +390,10 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
 }
 
 void rehearse(const Ranks& ranks) {
-    const LinearSystem system = chains_of_unknowns();
+    const SparseRows rows = chain();
+    LinearSystem system(rows);
+    std::ranges::fill(system.value, -1.0);
+    std::ranges::fill(system.row_sum, 0.1);
     for (Preconditioner preconditioner : {Preconditioner::factors, Preconditioner::multigrid})
         Krylov(ranks, system, {.name = "", .preconditioner = preconditioner}).set_up();
     Krylov(ranks, system, {.name = "", .prefix = "potential_", .preconditioner = Preconditioner::multigrid,

@@ -32,28 +32,25 @@ BodySurface surface_of(const Mesh& mesh, Region body) {
     return surface;
 }
 
-/// What the cells around a body gain at each vertex of its surface and did not get from other vertices [J].
-Array<Vertex, double> gained_around(const HeatStep& step, const Cells& cells, Region body,
-                                    const BodySurface& surface, const Array<Vertex, double>& after) {
-    Array<Vertex, double> sum(after.size(), 0.0);
-    const auto at_surface = [&](Vertex v) { return surface.area[v] > 0; };
-    for_each_cell(cells, [&](const auto& cell) {
-        const auto vertices = cell_vertices(step.current, cell);
-        if (cell_region(step.current, cell) == body || std::ranges::none_of(vertices, at_surface)) return;
-        const auto by_cell = gained(cell_system(step, cell), at_corners(after, vertices));
-        for (std::size_t i = 0; i < vertices.size(); ++i) sum[vertices[i]] += by_cell[i];
+SurfaceFlux surface_flux(const Ranks& ranks, const Mesh& mesh, const Assembled& step, Region body, double dt) {
+    BodySurface surface = surface_of(mesh, body);
+    Array<Vertex, char> of_body(mesh.position.size(), 0);
+    for_each_cell(living_cells(mesh, body), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) of_body[v] = 1;
     });
-    return sum;
-}
-
-SurfaceFlux surface_flux(const HeatStep& step, const Cells& cells, Region body,
-                         const Array<Vertex, double>& after) {
-    BodySurface surface = surface_of(step.current, body);
-    const auto around = gained_around(step, cells, body, surface, after);
+    std::vector<double> gained(surface.vertices.size(), 0.0);  // around the body, at each vertex [J]
+    for (std::size_t k = 0; k < gained.size(); ++k) {
+        const int row = step.pattern.numbering.row[surface.vertices[k]] - step.pattern.rows.first_row;
+        if (row < 0 || static_cast<std::size_t>(row) >= step.pattern.rows.count()) continue;
+        gained[k] = gained_at(step, mesh, static_cast<std::size_t>(row),
+                              [&](const auto& cell) { return cell_region(mesh, cell) != body; },
+                              [&](Vertex other) { return of_body[other] == 0; });
+    }
+    MPI_Allreduce(MPI_IN_PLACE, gained.data(), static_cast<int>(gained.size()), MPI_DOUBLE, MPI_SUM, ranks.communicator);
     SurfaceFlux flux{.body = body, .total = 0, .vertices = {}, .density = {}};
-    for (Vertex v : surface.vertices) {
-        flux.total += around[v] / step.dt;
-        flux.density.push_back(around[v] / (step.dt * surface.area[v]));
+    for (std::size_t k = 0; k < gained.size(); ++k) {
+        flux.total += gained[k] / dt;
+        flux.density.push_back(gained[k] / (dt * surface.area[surface.vertices[k]]));
     }
     flux.vertices = std::move(surface.vertices);
     return flux;
@@ -61,11 +58,10 @@ SurfaceFlux surface_flux(const HeatStep& step, const Cells& cells, Region body,
 
 }  // namespace
 
-std::vector<SurfaceFlux> surface_fluxes(const HeatStep& step, const Cells& cells,
-                                        const Array<Vertex, double>& after) {
+std::vector<SurfaceFlux> surface_fluxes(const Ranks& ranks, const Mesh& mesh, const Assembled& step, double dt) {
     std::vector<SurfaceFlux> fluxes;
-    for (std::size_t r = 1; r < count_regions(step.current); ++r)
-        fluxes.push_back(surface_flux(step, cells, Region(r), after));
+    for (std::size_t r = 1; r < count_regions(mesh); ++r)
+        fluxes.push_back(surface_flux(ranks, mesh, step, Region(r), dt));
     return fluxes;
 }
 

@@ -84,10 +84,11 @@ TEST(CaseErrors, WrongTypes) {
         {"x = \"0.0003*sin(4*pi*t/0.01)\"", "x = true",
          "body[0].motion.x (line 10): must be a finite number or an expression in quotes, got true"},
         {"z_min = \"insulated\"", "z_min = 300",
-         "heat.face.z_min (line 47): must be \"insulated\", { value = ... } [K] or { flux = ... } [W/m^2], "
-         "got 300"},
+         "heat.face.z_min (line 47): must be \"insulated\", { value = ... } [K], { flux = ... } [W/m^2] or "
+         "{ coefficient = ... [W/(m^2 K)], emissivity = ..., ambient = ... [K] }, got 300"},
         {"{ value = 300 }", "{ value = 300, flux = 1 }",
-         "heat.face.x_min (line 45): must have either a value [K] or a flux [W/m^2]"},
+         "heat.face.x_min (line 45): must have one condition: a value [K], a flux [W/m^2] (or its power [W]), or an "
+         "exchange of heat by a coefficient or an emissivity with an ambient"},
     });
     EXPECT_EQ(refusal("body = 3\n"), "case.toml: domain: is missing; it must be a table [domain]");
     EXPECT_EQ(refusal(replaced(replaced(full_case, "[[body]]", "[body.a]"), "[[body]]", "[body.b]")),

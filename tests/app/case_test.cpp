@@ -34,7 +34,7 @@ void expect_same(const HeatOptions& a, const HeatOptions& b) {
         EXPECT_EQ(a.regions[r].material.conductivity, b.regions[r].material.conductivity);
         EXPECT_EQ(a.regions[r].material.density, b.regions[r].material.density);
         EXPECT_EQ(a.regions[r].material.specific_heat, b.regions[r].material.specific_heat);
-        EXPECT_EQ(a.regions[r].initial, b.regions[r].initial);
+        EXPECT_EQ(a.regions[r].initial.value, b.regions[r].initial.value);
         EXPECT_EQ(a.regions[r].carried, b.regions[r].carried);
         expect_same(a.regions[r].source, b.regions[r].source);
     }

@@ -91,7 +91,7 @@ TEST(Run, LeavesFramesTableCheckpointAndReport) {
                                "energy_before_transfer",
                                "energy_limited",
                                "energy_beyond_bounds",
-                               "energy_from_body_1"})
+                               "heat_from_droplet"})
         EXPECT_EQ(numbers(steps, column).size(), 4u) << column;
     expect_floors_kept(steps, 10);
 }

@@ -28,28 +28,40 @@ TEST(StepsTable, HasNamesAndUnits) {
 
 TEST(StepRow, HasTheColumnsThatReadersKnow) {
     Case it;
-    it.domain.bodies.resize(2);
+    it.domain.bodies.resize(1);
+    it.domain.bodies[0].name = "a drop, left";
     EXPECT_EQ(csv_header(step_row(1, {}, {}, {}, it)),
               "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,"
               "min_dihedral [deg],max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,"
               "largest_ring,global_remeshes,given_up,touched_fraction,kept_vertices,kept_tets,mesh_seconds [s],"
-              "simulate_seconds [s],transfer_seconds [s],mesh_cpu_seconds [s],transferred_fraction");
+              "simulate_seconds [s],transfer_seconds [s],mesh_cpu_seconds [s],transferred_fraction,"
+              "x_a_drop__left [m],y_a_drop__left [m],z_a_drop__left [m],u_a_drop__left [m/s],v_a_drop__left [m/s],"
+              "w_a_drop__left [m/s],volume_a_drop__left [m^3],area_a_drop__left [m^2]");
     it.heat.emplace();
     EXPECT_TRUE(csv_header(step_row(1, {}, {}, {}, it))
-                    .ends_with(",energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited [K],"
-                               "energy_beyond_bounds [K],energy_from_body_1 [J/s],energy_from_body_2 [J/s]"));
+                    .ends_with(",temperature_min_a_drop__left [K],temperature_mean_a_drop__left [K],"
+                               "temperature_max_a_drop__left [K],heat_from_a_drop__left [W],"
+                               "energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited [K],"
+                               "energy_beyond_bounds [K],heat_out_x_min [W],heat_out_x_max [W],heat_out_y_min [W],"
+                               "heat_out_y_max [W],heat_out_z_min [W],heat_out_z_max [W],heat_sources [W],"
+                               "heat_at_surfaces [W],heat_held [W],energy_error [J]"));
 }
 
 TEST(StepRow, HasTheFiguresOfTheStep) {
     Case it;
-    it.domain.bodies.resize(2);
+    it.domain.bodies.resize(1);
+    it.domain.bodies[0].name = "b";
     it.heat.emplace();
     StepReport report;
     report.mesh.time = 2;
+    report.mesh.dt = 0.5;
     report.mesh.changes.swaps = 13;
     report.mesh.contents = {{.before_transfer = 4, .after = -5, .by_transfer = 1}};
     report.mesh.transfer = {{.limited = 6, .beyond = 7}};
-    report.heat_from_bodies = {0.5, -7};
+    report.heat.surfaces = {{.body = Region(1), .total = -7}};
+    report.heat.balance = {.before = 1, .after = 4, .faces = {0, 0, 0, 0, 0, 2}, .sources = {0.25, 0.5}};
+    report.bodies = {{.place = {1, 2, 3}, .mean = 300}};
+    report.velocities = {{4, 5, 6}};
     const StepRow row = step_row(3, report, {}, {.tets = 8, .worst = {}}, it);
     const auto value = [&](std::string_view column) {
         return std::ranges::find(row, column, &Figure::column)->value;
@@ -58,7 +70,11 @@ TEST(StepRow, HasTheFiguresOfTheStep) {
     EXPECT_EQ(value("time [s]"), 2);
     EXPECT_EQ(value("swaps"), 13);
     EXPECT_EQ(value("tets"), 8);
-    EXPECT_TRUE(csv_line(row).ends_with(",-5,0.2,4,6,7,0.5,-7")) << csv_line(row);
+    EXPECT_EQ(value("z_b [m]"), 3);
+    EXPECT_EQ(value("v_b [m/s]"), 5);
+    EXPECT_EQ(value("temperature_mean_b [K]"), 300);
+    EXPECT_EQ(value("heat_from_b [W]"), -7);
+    EXPECT_TRUE(csv_line(row).ends_with(",-5,0.2,4,6,7,0,0,0,0,0,-4,1.5,0,0,0.25")) << csv_line(row);
 }
 
 TEST(StepsTable, KeepsEveryBitOfANumber) {

@@ -45,8 +45,8 @@ HeatOptions hot_sphere_in_argon() {
 /// The heat [J] that an isothermal sphere has given to a medium at rest after a time [s]: the integral of
 /// 4 pi a^2 k dT (1/a + 1/sqrt(pi alpha t)) [Carslaw, Jaeger 1959, section 9.10].
 double heat_given(const HeatMaterial& medium, double time) {
-    const double alpha = medium.conductivity / (medium.density * medium.specific_heat);
-    return 4 * pi * radius * radius * medium.conductivity * (hot - cold) *
+    const double alpha = medium.conductivity(0) / (medium.density(0) * medium.specific_heat(0));
+    return 4 * pi * radius * radius * medium.conductivity(0) * (hot - cold) *
            (time / radius + 2 * std::sqrt(time / (pi * alpha)));
 }
 

@@ -1,0 +1,63 @@
+#include "app/body_state.h"
+
+#include "simulate/cells.h"
+#include "simulate/elements.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+double area_of(const Mesh& mesh, Region region) {
+    double area = 0;
+    for (const auto& [a, b, c] : region_surface(mesh, region).interface)
+        area += norm(cross(mesh.position[b] - mesh.position[a], mesh.position[c] - mesh.position[a])) / 2;
+    return area;
+}
+
+}  // namespace
+
+std::vector<BodyState> body_states(const Domain& domain, const Mesh& mesh, const Array<Vertex, double>* temperature) {
+    std::vector<BodyState> states(domain.bodies.size());
+    for (BodyState& state : states) {
+        state.coldest = temperature != nullptr ? INFINITY : 0;
+        state.hottest = -state.coldest;
+    }
+    for_each_cell(living_cells(mesh), [&](const auto& cell) {
+        const Region region = cell_region(mesh, cell);
+        if (region.value == 0) return;
+        BodyState& state = states[static_cast<std::size_t>(region.value - 1)];
+        const auto vertices = cell_vertices(mesh, cell);
+        const auto x = corners(mesh, cell);
+        const auto points = cell_points(x);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            state.volume += points[k].volume;
+            state.place += points[k].volume * mean_value(k, x);
+            if (temperature != nullptr) state.mean += points[k].volume * mean_value(k, at_corners(*temperature, vertices));
+        }
+        if (temperature == nullptr) return;
+        for (Vertex v : vertices) {
+            state.coldest = std::min(state.coldest, (*temperature)[v]);
+            state.hottest = std::max(state.hottest, (*temperature)[v]);
+        }
+    });
+    for (std::size_t body = 0; body < states.size(); ++body) {
+        BodyState& state = states[body];
+        if (!(state.volume > 0)) continue;
+        state.place = state.place / state.volume;
+        state.mean /= state.volume;
+        state.area = area_of(mesh, Region(body + 1));
+    }
+    return states;
+}
+
+std::string column_name(const std::string& body) {
+    std::string name = body;
+    const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-'; };
+    std::ranges::replace_if(name, [&](char c) { return !is_plain(static_cast<unsigned char>(c)); }, '_');
+    return name;
+}
+
+}  // namespace kropla

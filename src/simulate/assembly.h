@@ -1,0 +1,63 @@
+#pragma once
+
+#include "base/for_all.h"
+#include <kropla/base/watch.h>
+#include "simulate/pattern.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace kropla {
+
+/// What a cell adds to the rows of its corners: the row i of its matrix A on values x is
+///     row_sum[i] x_i + sum over j of matrix[i][j] (x_j - x_i).
+/// What is exchanged is in the second part alone: of a constant it makes exactly nothing.
+template <std::size_t n>
+struct CellSystem {
+    std::array<std::array<double, n>, n> matrix = {};  // A off its diagonal; what is on it is of no matter
+    std::array<double, n> row_sum = {};                // of A
+    std::array<double, n> held = {};                   // of it, by what is there
+    std::array<double, n> right = {};
+    std::array<double, n> load = {};                   // more of the right-hand side: what comes from outside
+};
+
+/// A x - b of the cell.
+template <std::size_t n>
+[[nodiscard]] std::array<double, n> gained(const CellSystem<n>& system, const std::array<double, n>& x) {
+    std::array<double, n> sum;
+    for (std::size_t i = 0; i < n; ++i) {
+        sum[i] = system.row_sum[i] * x[i] - system.right[i] - system.load[i];
+        for (std::size_t j = 0; j < n; ++j) sum[i] += system.matrix[i][j] * (x[j] - x[i]);
+    }
+    return sum;
+}
+
+/// In the order of the cells.
+struct CellSystems {
+    std::vector<CellSystem<4>> tets;
+    std::vector<CellSystem<6>> prisms;
+};
+
+/// Asks the kernel, `CellSystem<4> kernel(Tet)` and `CellSystem<6> kernel(Prism)`, of each cell that `wanted` names,
+/// from several threads at once; the others stay as they are. Throws Interrupted if the watch says so.
+template <class Kernel, class Wanted>
+void ask_cells(const Cells& cells, const Kernel& kernel, const Wanted& wanted, CellSystems& systems, const Watch* watch) {
+    constexpr std::size_t at_once = 256;
+    const auto ask = [&](const auto& names, auto& parts) {
+        parts.resize(names.size());
+        for_all((names.size() + at_once - 1) / at_once, [&](std::size_t part) {
+            heed(watch);
+            for (std::size_t c = part * at_once; c < std::min(names.size(), (part + 1) * at_once); ++c)
+                if (wanted(names[c])) parts[c] = kernel(names[c]);
+        }, 1);
+    };
+    ask(cells.tets, systems.tets);
+    ask(cells.prisms, systems.prisms);
+}
+
+/// Adds what the cells of the pattern say to the system: each row in the cells' order, so that the sums are the same to
+/// the bit for any number of threads and of ranks.
+void add_cells(const Pattern& pattern, const CellSystems& systems, LinearSystem& system);
+
+}  // namespace kropla
