@@ -35,6 +35,7 @@ namespace {
 
 struct MeshOptions {
     std::filesystem::path case_file, out;
+    std::vector<std::string> settings;
 };
 
 /// The initial mesh, written.
@@ -59,7 +60,7 @@ int write_initial_mesh(const MeshOptions& options) {
     }
     Watch watch;
     const CatchInterrupts catching(watch);
-    const Case it = read_case(options.case_file);
+    const Case it = read_case(options.case_file, options.settings);
     const Mesh mesh = written_mesh_of(it, options.out, watch);
     const QualitySummary quality = summarise_quality(mesh);
     fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
@@ -128,11 +129,21 @@ struct Request {
     std::string name;
 };
 
+void describe_settings(CLI::App& command, std::vector<std::string>& settings) {
+    command
+        .add_option("--set", settings,
+                    "put a value in place of the case's: KEY is a parameter, or a full name such as size.surface, "
+                    "body[0].radius, heat.region.droplet.conductivity; may be given several times")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+}
+
 void describe_run(CLI::App& app, RunOptions& options) {
     CLI::App* run =
         app.add_subcommand("run", "Runs a case: frames, steps.csv and a checkpoint go into a folder");
     run->add_option("CASE", options.case_file, "the case file (TOML; see `kropla new`)")->required();
     run->add_option("--out", options.out, "the folder that the run fills")->required()->type_name("DIR");
+    describe_settings(*run, options.settings);
     run->add_flag("--resume", options.resume, "go on from the checkpoint in the folder");
     run->add_flag("--force", options.force, "overwrite the run that the folder holds");
     run->add_flag("--test-rollback", options.test_rollback,
@@ -144,6 +155,7 @@ void describe_run(CLI::App& app, RunOptions& options) {
     run->footer(
         "PETSc's options reach it untouched; put them last:\n"
         "  kropla run droplet.toml --out droplet -ksp_monitor -ksp_rtol 1e-10\n"
+        "Another value for a key of the case: kropla run droplet.toml --out fine --set size.surface=1e-4\n"
         "Several processes share the solution: mpirun -n 2 kropla run droplet.toml --out droplet\n"
         "Look at the result: paraview droplet/frames.pvd\n"
         "Ctrl-C drops the step under way and leaves a checkpoint; --resume goes on from it, to the bit as if nothing\n"
@@ -154,6 +166,7 @@ void describe_others(CLI::App& app, Request& request) {
     CLI::App* mesh = app.add_subcommand("mesh", "Writes the initial mesh of a case, and nothing more");
     mesh->add_option("CASE", request.mesh.case_file, "the case file")->required();
     mesh->add_option("-o,--output", request.mesh.out, "the VTU file to write")->required()->type_name("FILE");
+    describe_settings(*mesh, request.mesh.settings);
     mesh->footer("Example: kropla mesh droplet.toml -o droplet.vtu");
 
     CLI::App* check = app.add_subcommand("check", "Tells whether meshes are valid, and how good they are");
@@ -216,7 +229,8 @@ const std::filesystem::path& subject(const CLI::App& app, const Request& request
 std::string too_much(const CLI::App& app, const Request& request) {
     if (!app.got_subcommand("run") && !app.got_subcommand("mesh")) return "not enough memory";
     try {
-        const Case it = read_case(subject(app, request));
+        const auto& settings = app.got_subcommand("run") ? request.run.settings : request.mesh.settings;
+        const Case it = read_case(subject(app, request), settings);
         return fmt::format("{}: not enough memory for about {:.1e} tets; larger size.surface and size.far take less",
                            subject(app, request).string(), estimate_tets(it.domain));
     } catch (const std::exception&) {

@@ -14,9 +14,12 @@ std::string folder_name(const std::filesystem::path& dir) {
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-/// Without blanks and without what follows '#'.
+/// Without blanks and without what follows '#'; of `key = "formula"  # = number` with the number for the formula.
 std::string stripped(std::string_view line) {
-    std::string text(line.substr(0, line.find('#')));
+    constexpr std::string_view value = "  # = ";
+    const std::size_t known = line.find(value);
+    std::string text(line.substr(0, line.find(known == std::string_view::npos ? '#' : '=')));
+    if (known != std::string_view::npos) text += '=' + std::string(line.substr(known + value.size()));
     std::erase_if(text, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '_'; });
     return text;
 }

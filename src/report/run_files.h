@@ -37,7 +37,7 @@ struct RunFiles {
 [[nodiscard]] RunFiles read_run_files(const std::filesystem::path& dir);
 
 /// The number that stands as `key` in the table `[section]` of a case as run; nothing if there is none. It
-/// knows the plain form in which a run writes its case, not all of TOML.
+/// knows the plain form in which a run writes its case, with the values of expressions behind them, not all of TOML.
 [[nodiscard]] std::optional<double> number_of_case(std::string_view case_text, std::string_view section,
                                                    std::string_view key);
 
