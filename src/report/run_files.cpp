@@ -9,11 +9,6 @@
 namespace kropla {
 namespace {
 
-std::string folder_name(const std::filesystem::path& dir) {
-    const std::filesystem::path whole = std::filesystem::absolute(dir).lexically_normal();
-    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
-}
-
 /// Without blanks and without what follows '#'; of `key = "formula"  # = number` with the number for the formula.
 std::string stripped(std::string_view line) {
     constexpr std::string_view value = "  # = ";
@@ -68,6 +63,11 @@ RunFiles without_steps(const std::filesystem::path& dir) {
 }
 
 }  // namespace
+
+std::string folder_name(const std::filesystem::path& dir) {
+    const std::filesystem::path whole = std::filesystem::absolute(dir).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
 
 RunFiles read_run_files(const std::filesystem::path& dir) {
     const bool ended = std::filesystem::exists(dir / ending_name);

@@ -32,6 +32,9 @@ struct RunFiles {
     std::optional<Ending> ending = {};
 };
 
+/// What a folder is called, however the path to it is written.
+[[nodiscard]] std::string folder_name(const std::filesystem::path& dir);
+
 /// Reads DIR/case.toml, steps.csv and frames.pvd, and bodies.csv and ended.toml where they are there. Throws FileError,
 /// naming the file, if another is missing or one is broken. Of a run that ended before its first step there may be ended.toml alone.
 [[nodiscard]] RunFiles read_run_files(const std::filesystem::path& dir);
