@@ -94,14 +94,14 @@ public:
         }
         keep();
         const auto succeeded = static_cast<std::size_t>(std::ranges::count(rows_, 0, &SweepRow::code));
-        const std::string runs =
-            succeeded == count ? fmt::format("{} runs", count) : fmt::format("{} of {} runs", succeeded, count);
         if (interrupted_) {
-            print(fmt::format("interrupted: {} are done; the same command goes on\n", runs));
+            print(fmt::format("interrupted: {} of {} runs are done; the same command goes on\n", succeeded, count));
             return interrupted;
         }
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-        print(fmt::format("done: {} in {}; see {}\n", runs, clock_time(taken.count()),
+        const std::string runs = succeeded == count ? fmt::format("done: {} runs", count)
+                                                    : fmt::format("{} of {} runs are done,", succeeded, count);
+        print(fmt::format("{} in {}; see {}\n", runs, clock_time(taken.count()),
                           (options_.out / sweep_page_name).string()));
         return std::ranges::max_element(rows_, {}, &SweepRow::code)->code;
     }

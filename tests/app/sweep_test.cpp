@@ -69,7 +69,7 @@ TEST(Sweep, TellsOfAFailedRunAndGoesOn) {
     EXPECT_EQ(it.code, 2);
     expect_one_line(it.err, "s/speed=50: a.toml: body \"droplet\": motion takes it out of the box");
     EXPECT_NE(it.out.find("run 1/2  speed=50   failed in 0:0"), std::string::npos) << it.out;
-    EXPECT_NE(it.out.find("\ndone: 1 of 2 runs in "), std::string::npos) << it.out;
+    EXPECT_NE(it.out.find("\n1 of 2 runs are done, in 0:0"), std::string::npos) << it.out;
     const Table table = read_table(folder.path / "s/sweep.csv");
     EXPECT_EQ(column(table, "exit_code"), (Cells{"2", "0"}));
     EXPECT_EQ(column(table, "step"), (Cells{"", "2"}));
