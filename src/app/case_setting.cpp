@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -42,23 +43,27 @@ struct Change {
     std::string value;
 };
 
-/// A table that holds the value alone, under dotted `names`.
-toml::table parsed(const std::vector<std::string>& names, const Change& change, bool may_be_text) {
+/// A table that holds, under dotted `names`, the value of these words alone; nothing if they are not TOML.
+std::optional<toml::table> table_of(const std::vector<std::string>& names, const std::string& words, const Change& change) {
     std::vector<std::string> quoted;
     for (const std::string& name : names) quoted.push_back(toml_text(name));
-    const auto parse = [&](const std::string& words) {
-        const std::string line = fmt::format("{} = {}", fmt::join(quoted, "."), words);
-        return toml::parse(std::string_view(line), source_of(change.setting));
-    };
-    const std::string& value = change.value;
+    const std::string line = fmt::format("{} = {}", fmt::join(quoted, "."), words);
+    if (line.find('\n') != std::string::npos) return {};  // there would be more than a value
     try {
-        if (value.find('\n') == std::string::npos) return parse(value);
+        return toml::parse(std::string_view(line), source_of(change.setting));
     } catch (const toml::parse_error&) {
-        if (may_be_text) return parse(toml_text(value));
-        if (const auto values = values_of_list(value); values.size() > 1)
-            refuse(change.setting,
-                   fmt::format("must be one value, not {}; kropla sweep runs a case for each", values.size()));
+        return {};
     }
+}
+
+toml::table parsed(const std::vector<std::string>& names, const Change& change, bool may_be_text) {
+    const std::string& value = change.value;
+    if (auto table = table_of(names, value, change)) return std::move(*table);
+    if (may_be_text)
+        if (auto table = table_of(names, toml_text(value), change)) return std::move(*table);
+    if (const auto values = values_of_list(value); values.size() > 1)
+        refuse(change.setting,
+               fmt::format("must be one value, not {}; kropla sweep runs a case for each", values.size()));
     refuse(change.setting,
            fmt::format("{} is no TOML value: a number, a text in quotes, a list in brackets, true or false", value));
 }
