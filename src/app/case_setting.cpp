@@ -56,6 +56,7 @@ std::optional<toml::table> table_of(const std::vector<std::string>& names, const
     }
 }
 
+/// The same, of the value; where it is not TOML, it may be a text. Throws CaseError.
 toml::table parsed(const std::vector<std::string>& names, const Change& change, bool may_be_text) {
     const std::string& value = change.value;
     if (auto table = table_of(names, value, change)) return std::move(*table);

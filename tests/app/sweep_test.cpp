@@ -41,6 +41,10 @@ TEST(Sweep, RunsAllAndComparesThem) {
         EXPECT_EQ(column(table, of_run.name)[1], of_run.cells.back()) << of_run.name;
     EXPECT_TRUE(fs::exists(folder.path / "s/sweep.html"));
     EXPECT_NE(contents(folder.path / "s/speed=0.5/case.toml").find("\nspeed = 0.5\n"), std::string::npos);
+    const std::string page = contents(folder.path / "s/sweep.html");
+    fs::remove(folder.path / "s/sweep.html");
+    EXPECT_EQ(kropla_program(folder, "report s").out, "s/sweep.html: written\n");
+    EXPECT_EQ(contents(folder.path / "s/sweep.html"), page);
     EXPECT_EQ(kropla_program(folder, "run a.toml --out alone --set speed=0.5").code, 0);
     expect_same_run(folder.path / "s/speed=0.5", folder.path / "alone");
 }
