@@ -3,6 +3,8 @@
 
 #include "app/case_body.h"
 #include "app/case_heat.h"
+#include "app/case_parameters.h"
+#include "app/case_setting.h"
 #include "app/case_table.h"
 #include <kropla/base/error.h>
 #include "io/file.h"
@@ -113,10 +115,13 @@ toml::table parse(std::string_view text, const std::string& name) {
 
 }  // namespace
 
-Case parse_case(std::string_view text, const std::string& name) {
-    const toml::table table = parse(text, name);
-    const CaseTable file(name, "", table);
-    file.allow({"domain", "body", "size", "quality", "time", "heat", "output", "random"});
+Case parse_case(std::string_view text, const std::string& name, std::span<const std::string> settings) {
+    toml::table table = parse(text, name);
+    apply_settings(settings, table);
+    CaseReading reading{.file = name};
+    const CaseTable file(reading, "", table);
+    file.allow({"parameters", "domain", "body", "size", "quality", "time", "heat", "output", "random"});
+    if (file.has("parameters")) read_parameters(file.table("parameters"), reading);
     Case it;
     it.domain.box = read_box(file.table("domain"));
     read_bodies(file, it);
@@ -126,9 +131,15 @@ Case parse_case(std::string_view text, const std::string& name) {
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
     if (file.has("output")) it.output = read_output(file.table("output"));
     if (file.has("random")) it.random = read_random(file.table("random"));
+    if (file.has("parameters"))
+        for (const std::string& parameter : file.table("parameters").keys())
+            it.parameters.push_back({parameter, reading.parameters.at(parameter), reading.used.contains(parameter)});
+    it.written_numbers = std::move(reading.written);
     return it;
 }
 
-Case read_case(const std::filesystem::path& path) { return parse_case(read_file(path), path.string()); }
+Case read_case(const std::filesystem::path& path, std::span<const std::string> settings) {
+    return parse_case(read_file(path), path.string(), settings);
+}
 
 }  // namespace kropla

@@ -7,7 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,6 +34,13 @@ struct OutputPlan {
 
 struct RandomSeed {
     std::uint64_t seed = 1;
+};
+
+/// A name for expressions to use.
+struct Parameter {
+    std::string name;
+    double value = 0;
+    bool used = false;  // by an expression of the case
 };
 
 /// How the user put what the structs of a case hold in another form, each as a TOML value: `300`, `"-1.0*t"`,
@@ -60,17 +69,20 @@ struct Case {
 
     std::vector<WrittenBody> written_bodies;  // per body
     WrittenHeat written_heat;
+    std::vector<Parameter> parameters;
+    std::map<std::string, std::string> written_numbers;  // by full key, as TOML: those that are expressions of parameters
 };
 
 /// The most tets that a case may ask for: beyond, a run would take days and the memory of a large machine.
 inline constexpr double most_tets = 2e7;
 
 /// Reads a case file (TOML; its keys are explained in docs and in what `kropla new` writes).
-/// Throws FileError if the file cannot be read, and CaseError, naming file, key, line, value and what would
+/// `settings`, each "key=value", replace values of it (app/case_setting.h).
+/// Throws FileError if the file cannot be read, and CaseError, naming file or setting, key, line, value and what would
 /// be right, if anything in it is wrong, missing or unknown. Whether bodies and sizes fit is asked by `foresee`.
-[[nodiscard]] Case read_case(const std::filesystem::path& path);
+[[nodiscard]] Case read_case(const std::filesystem::path& path, std::span<const std::string> settings = {});
 /// As above, from the text itself; `name` stands for the file in refusals.
-[[nodiscard]] Case parse_case(std::string_view text, const std::string& name);
+[[nodiscard]] Case parse_case(std::string_view text, const std::string& name, std::span<const std::string> settings = {});
 
 /// The case as it is run, defaults filled in, as a case file that reads as the same case again.
 [[nodiscard]] std::string to_toml(const Case& it);

@@ -92,8 +92,10 @@ WrittenProperty read_property(const CaseTable& table, std::string_view key, doub
     }
     const Formula formula = table.formula(key, Variables::temperature);
     const double usual = formula.value(usual_temperature);
+    const std::vector<std::string> names = names_in(formula.value.text());
     if (!is_good(usual))
         table.refuse(key, fmt::format("must be positive, but {} is {} at T = {}", formula.written, usual, usual_temperature));
+    if (std::ranges::find(names, "T") == names.end()) return {usual, formula.written};
     return {sampled(formula.value, usual_temperature), formula.written};
 }
 

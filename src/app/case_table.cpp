@@ -29,6 +29,15 @@ std::string shown(const toml::node& node) {
     return "a date or time";
 }
 
+bool comes_from_file(const CaseReading& reading, const toml::source_region& at) {
+    return !at.path || *at.path == reading.file;
+}
+
+/// Where something stands: "FILE: body[0].radius (line 12)", or what it comes from if that is not the file.
+std::string origin(const CaseReading& reading, const toml::source_region& at, const std::string& name) {
+    return comes_from_file(reading, at) ? fmt::format("{}: {} (line {})", reading.file, name, at.begin.line) : *at.path;
+}
+
 std::optional<double> finite_number(const toml::node& node) {
     if (!node.is_number()) return {};
     const auto number = node.value<double>();
@@ -37,8 +46,8 @@ std::optional<double> finite_number(const toml::node& node) {
 
 }  // namespace
 
-CaseTable::CaseTable(std::string file, std::string name, const toml::table& table)
-    : file_(std::move(file)), name_(std::move(name)), table_(&table) {}
+CaseTable::CaseTable(CaseReading& reading, std::string name, const toml::table& table)
+    : reading_(&reading), name_(std::move(name)), table_(&table) {}
 
 void CaseTable::allow(std::initializer_list<std::string_view> keys) const {
     allow(std::vector<std::string>(keys.begin(), keys.end()));
@@ -51,8 +60,19 @@ void CaseTable::allow(const std::vector<std::string>& keys) const {
         if (first == nullptr || key.source().begin < first->source().begin) first = &key;
     }
     if (first == nullptr) return;
-    throw CaseError(fmt::format("{}: {} (line {}): unknown key; {}", file_, full_name(first->str()),
-                                first->source().begin.line, suggestion(first->str(), keys)));
+    throw CaseError(fmt::format("{}: unknown key; {}", origin(*reading_, first->source(), full_name(first->str())),
+                                suggestion(first->str(), keys)));
+}
+
+std::vector<std::string> CaseTable::keys() const {
+    std::vector<toml::key> keys;
+    for (const auto& [key, value] : *table_) keys.push_back(key);
+    std::ranges::stable_sort(keys, {}, [](const toml::key& key) {
+        return std::pair(key.source().begin.line, key.source().begin.column);
+    });
+    std::vector<std::string> names;
+    for (const toml::key& key : keys) names.emplace_back(key.str());
+    return names;
 }
 
 bool CaseTable::has(std::string_view key) const { return table_->contains(key); }
@@ -60,9 +80,35 @@ bool CaseTable::holds_text(std::string_view key) const { return has(key) && tabl
 bool CaseTable::holds_table(std::string_view key) const { return has(key) && table_->get(key)->is_table(); }
 
 double CaseTable::number(std::string_view key, std::string_view must) const {
-    const auto value = finite_number(node(key, must));
-    if (!value) refuse_value(key, "must be a finite number");
+    constexpr std::string_view finite = "must be a finite number";
+    const auto value = number_in(key, node(key, must), finite);
+    if (!value) refuse_value(key, finite);
+    remember(key);
     return *value;
+}
+
+/// A number that stands there, or the value of an expression of parameters.
+std::optional<double> CaseTable::number_in(std::string_view key, const toml::node& value, std::string_view must) const {
+    const auto text = value.value_exact<std::string>();
+    if (!text) return finite_number(value);
+    try {
+        const double number = compiled(*text, Variables::none)(0);
+        if (!std::isfinite(number))
+            throw CaseError(
+                fmt::format("{}, which is {}", toml_text(*text), std::isnan(number) ? "not a number" : "infinite"));
+        return number;
+    } catch (const CaseError& error) {
+        refuse(key, fmt::format("{}, got {}", must, error.what()));
+    }
+}
+
+/// Keeps how the numbers of a key are written, where they are expressions.
+void CaseTable::remember(std::string_view key) const {
+    const toml::node& value = *table_->get(key);
+    const toml::array* array = value.as_array();
+    if (value.is_string() ||
+        (array != nullptr && std::ranges::any_of(*array, [](const toml::node& item) { return item.is_string(); })))
+        reading_->written[full_name(key)] = shown(value);
 }
 
 double CaseTable::number(std::string_view key) const { return number(key, "must be a finite number"); }
@@ -76,8 +122,15 @@ double CaseTable::positive(std::string_view key) const {
 std::int64_t CaseTable::integer(std::string_view key, std::int64_t least, std::int64_t most) const {
     const std::string must = fmt::format("must be a whole number from {} to {}", least, most);
     const toml::node& given = node(key, must);
-    const auto value = given.value_exact<std::int64_t>();
-    if (const auto number = finite_number(given); number && !value && *number == std::floor(*number))
+    auto value = given.value_exact<std::int64_t>();
+    if (given.is_string()) {
+        const double number = *number_in(key, given, must);
+        constexpr double exact = 9007199254740992;  // up to here, all whole numbers are doubles
+        if (number != std::floor(number) || std::abs(number) > exact)
+            refuse(key, fmt::format("{}, got {} = {}", must, shown(given), number));
+        value = static_cast<std::int64_t>(number);
+        remember(key);
+    } else if (const auto number = finite_number(given); number && !value && *number == std::floor(*number))
         refuse(key, fmt::format("{}, got {:.1f}, which has a fraction to TOML; write {:.0f}", must, *number, *number));
     if (!value || *value < least || *value > most) refuse_value(key, must);
     return *value;
@@ -95,9 +148,10 @@ std::vector<double> CaseTable::numbers(std::string_view key, std::size_t count,
     std::vector<double> values;
     const toml::array* array = node(key, must).as_array();
     for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
-        if (const auto value = finite_number(*array->get(i))) values.push_back(*value);
+        if (const auto value = number_in(key, *array->get(i), must)) values.push_back(*value);
     }
     if (array == nullptr || values.size() != count || array->size() != count) refuse_value(key, must);
+    remember(key);
     return values;
 }
 
@@ -142,7 +196,13 @@ Formula CaseTable::formula(std::string_view key, const toml::node& value, std::s
     }
     const auto text = value.value_exact<std::string>();
     if (!text) refuse_value(key, must);
-    Expression expression = compiled(key, *text, variables);
+    Expression expression = [&] {
+        try {
+            return compiled(*text, variables);
+        } catch (const CaseError& error) {
+            refuse(key, error.what());
+        }
+    }();
     const double at_start = expression(0, probe);
     if (variables != Variables::temperature && !std::isfinite(at_start)) {
         refuse(key, fmt::format("must be finite, but {} is {} at t = 0", toml_text(*text),
@@ -161,19 +221,18 @@ std::vector<Formula> CaseTable::formulas(std::string_view key, std::size_t count
     return all;
 }
 
-Expression CaseTable::compiled(std::string_view key, const std::string& text, Variables variables) const {
-    try {
-        return Expression(text, variables);
-    } catch (const CaseError& error) {
-        refuse(key, error.what());
-    }
+Expression CaseTable::compiled(const std::string& text, Variables variables) const {
+    Expression expression(text, variables, reading_->parameters);
+    for (const std::string& name : names_in(text))
+        if (reading_->parameters.contains(name)) reading_->used.insert(name);
+    return expression;
 }
 
 CaseTable CaseTable::table(std::string_view key) const {
     const std::string must = fmt::format("must be a table [{}]", full_name(key));
     const toml::table* table = node(key, must).as_table();
     if (table == nullptr) refuse_value(key, must);
-    return {file_, full_name(key), *table};
+    return {*reading_, full_name(key), *table};
 }
 
 std::vector<CaseTable> CaseTable::tables(std::string_view key) const {
@@ -184,21 +243,25 @@ std::vector<CaseTable> CaseTable::tables(std::string_view key) const {
         refuse_value(key, fmt::format("must be tables, each under [[{}]]", full_name(key)));
     }
     for (std::size_t i = 0; i < array->size(); ++i) {
-        found.emplace_back(file_, fmt::format("{}[{}]", full_name(key), i), *array->get(i)->as_table());
+        found.emplace_back(*reading_, fmt::format("{}[{}]", full_name(key), i), *array->get(i)->as_table());
     }
     return found;
 }
 
 void CaseTable::refuse(std::string_view key, std::string_view what) const {
-    const toml::node* value = table_->get(key);
-    const auto line = (value != nullptr ? value->source() : table_->source()).begin.line;
-    const bool whole_file = value == nullptr && name_.empty();
-    throw CaseError(fmt::format("{}: {}{}: {}", file_, full_name(key),
-                                whole_file ? "" : fmt::format(" (line {})", line), what));
+    if (const toml::node* value = table_->get(key))
+        throw CaseError(fmt::format("{}: {}", origin(*reading_, value->source(), full_name(key)), what));
+    if (name_.empty()) throw CaseError(fmt::format("{}: {}: {}", reading_->file, key, what));
+    const toml::source_region& at = table_->source();
+    const std::string name = comes_from_file(*reading_, at) ? "" : ": " + full_name(key);
+    throw CaseError(fmt::format("{}{}: {}", origin(*reading_, at, full_name(key)), name, what));
 }
 
 void CaseTable::refuse_value(std::string_view key, std::string_view must) const {
-    refuse(key, fmt::format("{}, got {}", must, shown(node(key, must))));
+    const toml::node& value = node(key, must);
+    const bool is_expression = value.is_string() && reading_->written.contains(full_name(key));
+    refuse(key, fmt::format("{}, got {}{}", must, shown(value),
+                            is_expression ? fmt::format(" = {}", *number_in(key, value, must)) : ""));
 }
 
 const toml::node& CaseTable::node(std::string_view key, std::string_view must) const {

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,19 +30,31 @@ struct Formula {
     std::string written;
 };
 
+/// What the tables of a case file share while it is read.
+struct CaseReading {
+    std::string file;            // its name
+    Constants parameters = {};   // that expressions may use
+    std::set<std::string> used = {};                  // of these, what expressions have used so far
+    std::map<std::string, std::string> written = {};  // by full key, as TOML: numbers that are expressions there
+};
+
 /// A table of the case file while it is read: it knows the file, its own name and line, and refuses what is
-/// wrong with one line, "FILE: body[0].radius (line 12): must be positive, got -1". Every question throws
-/// CaseError like this if the key is missing or its value is not what is asked for.
+/// wrong with one line, "FILE: body[0].radius (line 12): must be positive, got -1"; what does not come from the file
+/// with the name of its origin, "--set body[0].radius=-1: must be positive, got -1". Every question throws
+/// CaseError like this if the key is missing or its value is not what is asked for. Any number may stand there as an
+/// expression of parameters, in quotes.
 class CaseTable {
 public:
-    /// `name` is the table's own, as in "body[0]"; empty for the file itself. It outlives this object.
-    CaseTable(std::string file, std::string name, const toml::table& table);
+    /// `name` is the table's own, as in "body[0]"; empty for the file itself. `reading` and `table` outlive this object.
+    CaseTable(CaseReading& reading, std::string name, const toml::table& table);
 
     /// Throws if there is a key that is not one of these, and suggests the one that was meant.
     void allow(std::initializer_list<std::string_view> keys) const;
     void allow(const std::vector<std::string>& keys) const;
 
     [[nodiscard]] bool has(std::string_view key) const;
+    /// As they stand in the file.
+    [[nodiscard]] std::vector<std::string> keys() const;
 
     /// A finite number.
     [[nodiscard]] double number(std::string_view key) const;
@@ -82,13 +96,16 @@ public:
 private:
     [[nodiscard]] const toml::node& node(std::string_view key, std::string_view must) const;
     [[nodiscard]] double number(std::string_view key, std::string_view must) const;
+    [[nodiscard]] std::optional<double> number_in(std::string_view key, const toml::node& value,
+                                                  std::string_view must) const;
+    void remember(std::string_view key) const;
     [[nodiscard]] std::string full_name(std::string_view key) const;
     [[nodiscard]] Formula formula(std::string_view key, const toml::node& value, std::string_view must,
                                   Variables variables, const Vec3& probe) const;
-    [[nodiscard]] Expression compiled(std::string_view key, const std::string& text,
-                                      Variables variables) const;
+    [[nodiscard]] Expression compiled(const std::string& text, Variables variables) const;
 
-    std::string file_, name_;
+    CaseReading* reading_;
+    std::string name_;
     const toml::table* table_;
 };
 

@@ -10,40 +10,55 @@
 namespace kropla {
 namespace {
 
-std::string vec3(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
-
-std::string layer(const LayerOptions& it) {
-    return fmt::format(
-        "[body.layer]\ncount = {}\nfirst_height = {}\ngrowth = {}\nside = \"{}\"\nmin_gap = {}\n", it.count,
-        it.first_height, it.growth, side_names[static_cast<std::size_t>(it.side)], least_gap(it));
+/// `key = value`, or as it was written if that is an expression, with the value behind it.
+template <class Value>
+std::string line(const Case& it, const std::string& table, const char* key, const Value& value) {
+    const auto written = it.written_numbers.find(fmt::format("{}.{}", table, key));
+    return written == it.written_numbers.end() ? fmt::format("{} = {}\n", key, value)
+                                               : fmt::format("{} = {}  # = {}\n", key, written->second, value);
 }
 
-std::string body(const Body& it, const WrittenBody& written) {
-    std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\ncentre = {}\n", toml_text(it.name),
-                                   written.shape, vec3(it.shape.centre));
+std::string vec3(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+std::string layer(const Case& it, const LayerOptions& layer, const std::string& table) {
+    return "[body.layer]\n" + line(it, table, "count", layer.count) +
+           line(it, table, "first_height", layer.first_height) + line(it, table, "growth", layer.growth) +
+           fmt::format("side = \"{}\"\n", side_names[static_cast<std::size_t>(layer.side)]) +
+           line(it, table, "min_gap", least_gap(layer));
+}
+
+std::string body(const Case& it, std::size_t number) {
+    const Body& body = it.domain.bodies[number];
+    const WrittenBody& written = it.written_bodies[number];
+    const std::string table = fmt::format("body[{}]", number);
+    std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\n", toml_text(body.name), written.shape) +
+                       line(it, table, "centre", vec3(body.shape.centre));
     if (written.shape == "sphere") {
-        text += fmt::format("radius = {}\n", it.shape.semi_axes.x);
+        text += line(it, table, "radius", body.shape.semi_axes.x);
     } else {
-        text += fmt::format("axes = {}\n", vec3(it.shape.semi_axes));
-        if (!written.rotation.empty()) text += fmt::format("rotation = {}\n", written.rotation);
+        text += line(it, table, "axes", vec3(body.shape.semi_axes));
+        if (!written.rotation.empty()) text += line(it, table, "rotation", written.rotation);
     }
     const auto& [x, y, z] = written.motion;
     if (!x.empty()) text += fmt::format("[body.motion]\nx = {}\ny = {}\nz = {}\n", x, y, z);
     if (!written.angle.empty()) text += fmt::format("angle = {}\naxis = {}\n", written.angle, written.axis);
-    if (it.layer) text += layer(*it.layer);
+    if (body.layer) text += layer(it, *body.layer, table + ".layer");
     return text;
 }
 
-std::string keys(const WrittenKeys& written) {
+std::string keys(const Case& it, const std::string& table, const WrittenKeys& written) {
     std::string text;
-    for (const auto& [key, value] : written) text += fmt::format("{} = {}\n", key, value);
+    for (const auto& [key, value] : written) text += line(it, table, key, value);
     return text;
 }
 
-std::string heat(const Domain& domain, const WrittenHeat& written) {
+std::string heat(const Case& it) {
+    const WrittenHeat& written = it.written_heat;
     std::string text;
     const auto add = [&](const char* kind, std::size_t region, const WrittenKeys& of) {
-        if (!of.empty()) text += fmt::format("\n[heat.{}.{}]\n{}", kind, toml_text(region_name(domain, region)), keys(of));
+        const std::string name = region_name(it.domain, region);
+        if (of.empty()) return;
+        text += fmt::format("\n[heat.{}.{}]\n", kind, toml_text(name)) + keys(it, fmt::format("heat.{}.{}", kind, name), of);
     };
     for (std::size_t r = 0; r < written.regions.size(); ++r) add("region", r, written.regions[r]);
     for (std::size_t body = 0; body < written.surfaces.size(); ++body) add("surface", body + 1, written.surfaces[body]);
@@ -52,29 +67,37 @@ std::string heat(const Domain& domain, const WrittenHeat& written) {
     return text;
 }
 
-std::string quality(const QualityPlan& it) {
-    const std::string text = fmt::format("\n[quality]\nmax_aspect_ratio = {}\n", it.max_aspect_ratio);
-    if (!it.paper) return text + "method = \"kropla\"\n";
-    const auto& [x1, x2] = it.paper->weights;
-    return text + fmt::format("method = \"paper\"\nweights = [{}, {}]\n", x1, x2);
+std::string quality(const Case& it) {
+    const QualityPlan& plan = it.quality;
+    const std::string text = "\n[quality]\n" + line(it, "quality", "max_aspect_ratio", plan.max_aspect_ratio);
+    if (!plan.paper) return text + "method = \"kropla\"\n";
+    const auto& [x1, x2] = plan.paper->weights;
+    return text + "method = \"paper\"\n" + line(it, "quality", "weights", fmt::format("[{}, {}]", x1, x2));
+}
+
+std::string parameters(const Case& it) {
+    std::string text = it.parameters.empty() ? "" : "\n[parameters]\n";
+    for (const Parameter& parameter : it.parameters)
+        text += line(it, "parameters", parameter.name.c_str(), parameter.value);
+    return text;
 }
 
 }  // namespace
 
 std::string to_toml(const Case& it) {
     std::string text = "# The case as run, defaults filled in. Lengths in metres, times in seconds.\n";
-    text += fmt::format("\n[domain]\nmin = {}\nmax = {}\n", vec3(it.domain.box.min), vec3(it.domain.box.max));
-    for (std::size_t b = 0; b < it.domain.bodies.size(); ++b) {
-        text += body(it.domain.bodies[b], it.written_bodies[b]);
-    }
+    text += parameters(it);
+    text += "\n[domain]\n" + line(it, "domain", "min", vec3(it.domain.box.min)) +
+            line(it, "domain", "max", vec3(it.domain.box.max));
+    for (std::size_t b = 0; b < it.domain.bodies.size(); ++b) text += body(it, b);
     const SizeField& size = it.domain.size;
-    text +=
-        fmt::format("\n[size]\nsurface = {}\ngrowth = {}\nfar = {}\n", size.surface, size.growth, size.far);
-    text += quality(it.quality);
-    text += fmt::format("\n[time]\nend = {}\nsteps = {}\n", it.time.end, it.time.steps);
-    if (it.heat) text += heat(it.domain, it.written_heat);
-    text += fmt::format("\n[output]\nevery = {}\n\n[random]\nseed = {}\n", it.output.every, it.random.seed);
-    return text;
+    text += "\n[size]\n" + line(it, "size", "surface", size.surface) + line(it, "size", "growth", size.growth) +
+            line(it, "size", "far", size.far);
+    text += quality(it);
+    text += "\n[time]\n" + line(it, "time", "end", it.time.end) + line(it, "time", "steps", it.time.steps);
+    if (it.heat) text += heat(it);
+    text += "\n[output]\n" + line(it, "output", "every", it.output.every);
+    return text + "\n[random]\n" + line(it, "random", "seed", it.random.seed);
 }
 
 }  // namespace kropla

@@ -11,10 +11,13 @@
 #include "app/progress.h"
 #include "app/run.h"
 #include "app/step.h"
+#include "app/sweep.h"
 #include <kropla/base/error.h>
 #include <kropla/io/vtk.h>
 #include <kropla/mesh/quality.h>
 #include "report/page.h"
+#include "report/sweep_file.h"
+#include "report/sweep_page.h"
 #include <kropla/step/initial_mesh.h>
 
 #include <CLI/CLI.hpp>
@@ -35,6 +38,7 @@ namespace {
 
 struct MeshOptions {
     std::filesystem::path case_file, out;
+    std::vector<std::string> settings;
 };
 
 /// The initial mesh, written.
@@ -59,7 +63,7 @@ int write_initial_mesh(const MeshOptions& options) {
     }
     Watch watch;
     const CatchInterrupts catching(watch);
-    const Case it = read_case(options.case_file);
+    const Case it = read_case(options.case_file, options.settings);
     const Mesh mesh = written_mesh_of(it, options.out, watch);
     const QualitySummary quality = summarise_quality(mesh);
     fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
@@ -101,6 +105,11 @@ int check_meshes(const std::vector<std::filesystem::path>& paths) {
 }
 
 int report_run(const std::filesystem::path& folder) {
+    if (std::filesystem::exists(folder / sweep_table_name)) {
+        write_sweep_report(folder);
+        fmt::print("{}: written\n", (folder / sweep_page_name).string());
+        return done;
+    }
     Watch watch;
     const CatchInterrupts catching(watch);
     try {
@@ -123,37 +132,73 @@ int start_case(const std::string& name) {
 struct Request {
     RunOptions run;
     MeshOptions mesh;
+    SweepOptions sweep;
     std::filesystem::path file;  // or folder
     std::vector<std::filesystem::path> files;  // or folders
     std::string name;
 };
+
+void describe_settings(CLI::App& command, std::vector<std::string>& settings) {
+    command
+        .add_option("--set", settings,
+                    "put a value in place of the case's: KEY is a parameter, or a full name such as size.surface, "
+                    "body[0].radius, heat.region.droplet.conductivity; may be given several times")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+}
+
+void describe_threads(CLI::App& command, int& threads) {
+    command.add_option("--threads", threads, "threads to use (else one per processor); the results are the same")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N");
+}
 
 void describe_run(CLI::App& app, RunOptions& options) {
     CLI::App* run =
         app.add_subcommand("run", "Runs a case: frames, steps.csv and a checkpoint go into a folder");
     run->add_option("CASE", options.case_file, "the case file (TOML; see `kropla new`)")->required();
     run->add_option("--out", options.out, "the folder that the run fills")->required()->type_name("DIR");
+    describe_settings(*run, options.settings);
     run->add_flag("--resume", options.resume, "go on from the checkpoint in the folder");
     run->add_flag("--force", options.force, "overwrite the run that the folder holds");
     run->add_flag("--test-rollback", options.test_rollback,
                   "refuse every step once after it was computed and redo it; the results are the same");
-    run->add_option("--threads", options.threads,
-                    "threads to use (else one per processor); the results are the same")
-        ->check(CLI::Range(1, 4096))
-        ->type_name("N");
+    describe_threads(*run, options.threads);
     run->footer(
         "PETSc's options reach it untouched; put them last:\n"
         "  kropla run droplet.toml --out droplet -ksp_monitor -ksp_rtol 1e-10\n"
+        "Another value for a key of the case: kropla run droplet.toml --out fine --set size.surface=1e-4\n"
         "Several processes share the solution: mpirun -n 2 kropla run droplet.toml --out droplet\n"
         "Look at the result: paraview droplet/frames.pvd\n"
         "Ctrl-C drops the step under way and leaves a checkpoint; --resume goes on from it, to the bit as if nothing\n"
         "had been, also with a later time.end or another output.every in the case. A second Ctrl-C ends at once.");
 }
 
+void describe_sweep(CLI::App& app, SweepOptions& options) {
+    CLI::App* sweep = app.add_subcommand("sweep", "Runs a case for several values of parameters or keys, and compares");
+    sweep->add_option("CASE", options.case_file, "the case file")->required();
+    sweep
+        ->add_option("--set", options.settings,
+                     "values for a parameter or a key of the case, as in kropla run; of several --set with lists, all "
+                     "combinations are run")
+        ->required()
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE,VALUE,...");
+    sweep->add_option("--out", options.out, "the folder of the sweep")->required()->type_name("DIR");
+    describe_threads(*sweep, options.threads);
+    sweep->footer(
+        "Example: kropla sweep droplet.toml --set size.surface=2e-4,3e-4 --out sizes\n"
+        "Each run has a folder in DIR, such as size.surface=2e-4; DIR/sweep.csv has a row and DIR/sweep.html the charts\n"
+        "of all. Ctrl-C leaves a checkpoint of the run under way; the same command goes on: what is complete is not run\n"
+        "again, what failed is tried again from its checkpoint. PETSc's options go to each run; put them last.\n"
+        "Exit code: the largest of the runs' codes; 130 interrupted");
+}
+
 void describe_others(CLI::App& app, Request& request) {
     CLI::App* mesh = app.add_subcommand("mesh", "Writes the initial mesh of a case, and nothing more");
     mesh->add_option("CASE", request.mesh.case_file, "the case file")->required();
     mesh->add_option("-o,--output", request.mesh.out, "the VTU file to write")->required()->type_name("FILE");
+    describe_settings(*mesh, request.mesh.settings);
     mesh->footer("Example: kropla mesh droplet.toml -o droplet.vtu");
 
     CLI::App* check = app.add_subcommand("check", "Tells whether meshes are valid, and how good they are");
@@ -166,8 +211,8 @@ void describe_others(CLI::App& app, Request& request) {
         "Exit code: 0 all valid, 5 not, or not readable");
 
     CLI::App* report =
-        app.add_subcommand("report", "Writes report.html, the run on one page, into its folder");
-    report->add_option("DIR", request.file, "the folder of a run, finished or not")->required();
+        app.add_subcommand("report", "Writes report.html, the run on one page, into its folder; of a sweep sweep.html");
+    report->add_option("DIR", request.file, "the folder of a run or sweep, finished or not")->required();
     report->footer("Example: kropla report droplet");
 
     CLI::App* start = app.add_subcommand("new", "Writes a commented case to start from");
@@ -180,6 +225,7 @@ void describe(CLI::App& app, Request& request) {
     app.set_version_flag("--version", "kropla " KROPLA_VERSION);
     app.set_help_all_flag("--help-all", "Print the help of all commands");
     describe_run(app, request.run);
+    describe_sweep(app, request.sweep);
     describe_others(app, request);
     app.footer(
         "Example:\n"
@@ -193,6 +239,7 @@ void describe(CLI::App& app, Request& request) {
 
 int dispatch(const CLI::App& app, const Request& request) {
     if (app.got_subcommand("run")) return run(request.run);
+    if (app.got_subcommand("sweep")) return sweep(request.sweep);
     if (app.got_subcommand("mesh")) return write_initial_mesh(request.mesh);
     if (app.got_subcommand("check")) return check_meshes(request.files);
     if (app.got_subcommand("report")) return report_run(request.file);
@@ -206,9 +253,10 @@ int complain(const std::string& what, int code) {
     return code;
 }
 
-/// The case of a run or mesh; of other commands the file or folder.
+/// The case of a run, sweep or mesh; of other commands the file or folder.
 const std::filesystem::path& subject(const CLI::App& app, const Request& request) {
     if (app.got_subcommand("run")) return request.run.case_file;
+    if (app.got_subcommand("sweep")) return request.sweep.case_file;
     return app.got_subcommand("mesh") ? request.mesh.case_file : request.file;
 }
 
@@ -216,7 +264,8 @@ const std::filesystem::path& subject(const CLI::App& app, const Request& request
 std::string too_much(const CLI::App& app, const Request& request) {
     if (!app.got_subcommand("run") && !app.got_subcommand("mesh")) return "not enough memory";
     try {
-        const Case it = read_case(subject(app, request));
+        const auto& settings = app.got_subcommand("run") ? request.run.settings : request.mesh.settings;
+        const Case it = read_case(subject(app, request), settings);
         return fmt::format("{}: not enough memory for about {:.1e} tets; larger size.surface and size.far take less",
                            subject(app, request).string(), estimate_tets(it.domain));
     } catch (const std::exception&) {
@@ -277,10 +326,10 @@ int execute_or_throw(const std::vector<std::string>& arguments) {
     } catch (const CaseError& error) {
         return complain(error.what(), bad_case);
     }
-    if (!parted.solver.empty() && !app.got_subcommand("run")) {
+    if (!parted.solver.empty() && !app.got_subcommand("run") && !app.got_subcommand("sweep")) {
         return complain(fmt::format("{} is an option of `kropla run`", parted.solver.front()), bad_case);
     }
-    request.run.solver_options = parted.solver;
+    request.run.solver_options = request.sweep.solver_options = parted.solver;
     const int code = carry_out(app, request);
     return code == done ? end_with(code) : code;
 }

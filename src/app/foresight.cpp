@@ -113,7 +113,7 @@ double interest(const Case& it) {
     return near + out;
 }
 
-/// The times in the run of which the motions' formulas speak.
+/// The times in the run of which the motions' formulas speak, also by a parameter.
 std::vector<double> times_in_formulas(const Case& it) {
     std::vector<double> times;
     const auto add = [&](const std::string& formula) {
@@ -125,6 +125,8 @@ std::vector<double> times_in_formulas(const Case& it) {
         add(body.angle);
         add(body.axis);
     }
+    for (const Parameter& parameter : it.parameters)
+        if (parameter.value > 0 && parameter.value < it.time.end) times.push_back(parameter.value);
     return times;
 }
 
@@ -265,6 +267,8 @@ std::vector<std::string> foresee(const Case& it, const Watch* watch) {
     check_layers(domain, 0);
     const Allowed all = look_at_all(it, watch);
     std::vector<std::string> warnings;
+    for (const Parameter& parameter : it.parameters)
+        if (!parameter.used) warnings.push_back(fmt::format("parameters.{} is used by no expression", parameter.name));
     for (const Approach& gap : all.seen.closest) {
         check_layer_gap(domain, gap);
         const double needed =

@@ -267,7 +267,7 @@ void write_run_report(const std::filesystem::path& folder, const PageOptions& op
 
 int run_with(const RunOptions& options, const Ranks& ranks) {
     const auto start_time = std::chrono::steady_clock::now();
-    Case it = read_case(options.case_file);
+    Case it = read_case(options.case_file, options.settings);
     const auto lock = hold_folder(options, ranks);
     Progress progress;
     if (!options.resume) progress.say(opening_line(options, it));

@@ -1,5 +1,6 @@
 #include "app/same_case.h"
 
+#include "app/case_parameters.h"
 #include <kropla/base/error.h>
 
 #include <fmt/format.h>
@@ -27,32 +28,61 @@ std::string plain_formula(std::string text) {
 
 bool is_name(std::string_view key) { return key.ends_with(".name") || key.ends_with(".shape"); }
 
-/// All values by their full keys.
-void flatten(const toml::node& node, const std::string& key, std::map<std::string, std::string>& values) {
-    const std::string dot = key.empty() ? "" : ".";
-    if (const toml::table* table = node.as_table()) {
-        for (const auto& [name, value] : *table) flatten(value, key + dot + std::string(name.str()), values);
-    } else if (const toml::array* array = node.as_array()) {
-        for (std::size_t i = 0; i < array->size(); ++i) flatten(*array->get(i), fmt::format("{}[{}]", key, i), values);
-    } else if (const auto text = node.value_exact<std::string>()) {
-        values[key] = is_name(key) ? *text : plain_formula(*text);
-    } else if (const auto whole = node.value_exact<std::int64_t>()) {
-        values[key] = fmt::format("{}", *whole);
-    } else if (const auto number = node.value<double>()) {
-        values[key] = fmt::format("{}", *number);
+/// How a value is written, and which number that is: empty if it is none.
+struct Value {
+    std::string wording, number;
+};
+
+bool are_same(const Value& a, const Value& b) {
+    return a.wording == b.wording || (!a.number.empty() && a.number == b.number);
+}
+
+Value formula_value(const std::string& text, const Constants& parameters) {
+    try {
+        return {plain_formula(text), fmt::format("{}", Expression(text, Variables::none, parameters)(0))};
+    } catch (const CaseError&) {  // of variables as well, or none at all
+        return {plain_formula(text), {}};
     }
 }
 
-std::map<std::string, std::string> values_of(std::string_view text) {
-    std::map<std::string, std::string> values;
-    flatten(toml::parse(text), "", values);
-    return values;
-}
+/// All values by their full keys.
+class Values {
+public:
+    explicit Values(std::string_view text) {
+        const toml::table table = toml::parse(text);
+        CaseReading reading;
+        const CaseTable file(reading, "", table);
+        if (file.has("parameters")) read_parameters(file.table("parameters"), reading);
+        parameters_ = std::move(reading.parameters);
+        flatten(table, "");
+    }
+    [[nodiscard]] const std::map<std::string, Value>& by_key() const { return values_; }
+    [[nodiscard]] Value of(const std::string& key) const {
+        const auto found = values_.find(key);
+        return found == values_.end() ? Value{"nothing", {}} : found->second;
+    }
 
-TimePlan plan_of(std::string_view text) {
-    const toml::table table = toml::parse(text);
-    return {table["time"]["end"].value_or(0.0), table["time"]["steps"].value_or(0)};
-}
+private:
+    void flatten(const toml::node& node, const std::string& key) {
+        const std::string dot = key.empty() ? "" : ".";
+        if (const toml::table* table = node.as_table()) {
+            for (const auto& [name, value] : *table) flatten(value, key + dot + std::string(name.str()));
+        } else if (const toml::array* array = node.as_array()) {
+            for (std::size_t i = 0; i < array->size(); ++i) flatten(*array->get(i), fmt::format("{}[{}]", key, i));
+        } else if (const auto text = node.value_exact<std::string>()) {
+            values_[key] = is_name(key) ? Value{*text, {}} : formula_value(*text, parameters_);
+        } else if (const auto whole = node.value_exact<std::int64_t>()) {
+            values_[key] = {fmt::format("{}", *whole), fmt::format("{}", *whole)};
+        } else if (const auto number = node.value<double>()) {
+            values_[key] = {fmt::format("{}", *number), fmt::format("{}", *number)};
+        }
+    }
+
+    Constants parameters_;
+    std::map<std::string, Value> values_;
+};
+
+TimePlan plan_of(std::string_view text) { return parse_case(text, "the case as run").time; }
 
 /// The steps of the run's length until the end.
 int steps_until(double end, double length) {
@@ -71,21 +101,18 @@ void go_on_to_end(Case& it, const RunSoFar& run, const std::string& file) {
         throw CaseError(fmt::format("{}: time.steps: {} make steps of {:.4g} s, those of the run so far are of {:.4g} s; {} "
                                     "does", file, it.time.steps, it.time.end / it.time.steps, length, fitting));
     it.time.steps = fitting;
+    it.written_numbers.erase("time.steps");
 }
 
 }  // namespace
 
 std::vector<CaseDifference> differences(std::string_view first, std::string_view second) {
-    const auto a = values_of(first), b = values_of(second);
-    const auto shown = [](const auto& values, const std::string& key) {
-        const auto found = values.find(key);
-        return found == values.end() ? "nothing" : found->second;
-    };
-    std::map<std::string, std::string> all = a;
-    all.insert(b.begin(), b.end());
+    const Values a(first), b(second);
+    std::map<std::string, Value> all = a.by_key();
+    all.insert(b.by_key().begin(), b.by_key().end());
     std::vector<CaseDifference> found;
     for (const auto& [key, value] : all)
-        if (shown(a, key) != shown(b, key)) found.push_back({key, shown(a, key), shown(b, key)});
+        if (!are_same(a.of(key), b.of(key))) found.push_back({key, a.of(key).wording, b.of(key).wording});
     return found;
 }
 

@@ -13,7 +13,8 @@ struct CaseDifference {
     std::string key, first, second;
 };
 
-/// Compares two cases, as to_toml writes them, key by key: numbers by value, formulas but for their blanks.
+/// Compares two cases, as to_toml writes them, key by key: numbers, and formulas of parameters alone, by value; other
+/// formulas but for their blanks.
 [[nodiscard]] std::vector<CaseDifference> differences(std::string_view first, std::string_view second);
 
 /// What a run remembers of the steps asked for: the case given when it was begun or last resumed, whose step length

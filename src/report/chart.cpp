@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -108,6 +109,17 @@ std::string draw_axes(const Chart& chart, const Axes& axes) {
     return svg + text_at({(left + right) / 2, bottom + 32}, "middle", chart.x_title);
 }
 
+/// The attribute for a colour of its own.
+std::string style(const char* what, const Series& series) {
+    return series.colour.empty() ? "" : std::string(" style=\"") + what + ':' + series.colour + '"';
+}
+
+/// Has a point no neighbour that a line could lead to?
+bool is_alone(const std::vector<Point2>& points, std::size_t i) {
+    const auto is_drawn = [&](std::size_t k) { return k < points.size() && std::isfinite(points[k].y); };
+    return is_drawn(i) && !is_drawn(i - 1) && !is_drawn(i + 1);  // before 0 is beyond the end
+}
+
 std::string draw_lines(const Chart& chart, const Axes& axes) {
     std::string svg;
     for (std::size_t s = 0; s < chart.series.size(); ++s) {
@@ -115,10 +127,13 @@ std::string draw_lines(const Chart& chart, const Axes& axes) {
         for (std::size_t row = 0; row < chart.x.size(); ++row) {
             points.push_back(on_drawing(axes, chart.x[row], chart.series[s].values[row]));
         }
-        svg += "<path class=\"line s" + std::to_string(s) + "\" d=\"" + line_path(points) + "\"/>";
-        if (points.size() == 1) {
-            svg += "<circle class=\"column s" + std::to_string(s) + "\" r=\"3\" cx=\"" + pixels(points[0].x) +
-                   "\" cy=\"" + pixels(points[0].y) + "\"/>";
+        const std::string place = std::to_string(s);
+        svg += "<path class=\"line s" + place + '"' + style("stroke", chart.series[s]) + " d=\"" + line_path(points) +
+               "\"/>";
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!is_alone(points, i)) continue;
+            svg += "<circle class=\"column s" + place + '"' + style("fill", chart.series[s]) + " r=\"3\" cx=\"" +
+                   pixels(points[i].x) + "\" cy=\"" + pixels(points[i].y) + "\"/>";
         }
     }
     return svg;
@@ -165,8 +180,8 @@ std::string draw_hints(const Chart& chart, const Axes& axes) {
 std::string draw_legend(const Chart& chart) {
     std::string html = "<div class=\"legend\">";
     for (std::size_t s = 0; s < chart.series.size() && (chart.series.size() > 1 || chart.limit); ++s) {
-        html += "<span><i class=\"swatch b" + std::to_string(s) + "\"></i>" + escaped(chart.series[s].name) +
-                "</span>";
+        html += "<span><i class=\"swatch b" + std::to_string(s) + '"' + style("background", chart.series[s]) + "></i>" +
+                escaped(chart.series[s].name) + "</span>";
     }
     if (chart.limit) {
         html += "<span><i class=\"swatch limit\"></i>limit " + readable(*chart.limit) + "</span>";
@@ -175,6 +190,13 @@ std::string draw_legend(const Chart& chart) {
 }
 
 }  // namespace
+
+TimeAxis time_axis(std::vector<double> seconds) {
+    const double end = seconds.empty() ? 1 : seconds.back();
+    const auto [scale, unit] = end < 1e-3 ? std::pair{1e6, "µs"} : end < 1 ? std::pair{1e3, "ms"} : std::pair{1.0, "s"};
+    for (double& t : seconds) t *= scale;
+    return {std::move(seconds), std::string("t [") + unit + "]"};
+}
 
 std::string draw_chart(const Chart& whole) {
     const Chart chart = thinned(whole);

@@ -10,9 +10,18 @@ namespace kropla {
 struct Series {
     std::string name;
     std::vector<double> values;
+    std::string colour = {};  // such as "#cf4446"; empty: of the page, which has three for a chart
 };
 
-/// A quantity over time, as it will be drawn.
+/// Times in the unit that suits them, and what the axis is called.
+struct TimeAxis {
+    std::vector<double> values;
+    std::string title;
+};
+/// Of times [s], ascending.
+[[nodiscard]] TimeAxis time_axis(std::vector<double> seconds);
+
+/// A quantity over time, or over another, as it will be drawn.
 struct Chart {
     enum class Marks {
         lines,

@@ -5,8 +5,8 @@
 #include "report/chart.h"
 #include "report/cuts.h"
 #include "report/ending.h"
+#include "report/html.h"
 #include "report/run_files.h"
-#include "report/style.h"
 #include "report/summary.h"
 #include "report/svg.h"
 
@@ -25,18 +25,11 @@ struct Source {
 /// Makes charts of one run's steps, all over the same axis of time.
 class Charts {
 public:
-    explicit Charts(const Table& steps) : steps_(steps), x_(numbers(steps, "time")) {
-        const double end = x_.empty() ? 1 : x_.back();
-        const auto [scale, unit] = end < 1e-3 ? std::pair{1e6, "µs"}
-                                   : end < 1  ? std::pair{1e3, "ms"}
-                                              : std::pair{1.0, "s"};
-        for (double& t : x_) t *= scale;
-        x_title_ = std::string("t [") + unit + "]";
-    }
+    explicit Charts(const Table& steps) : steps_(steps), time_(time_axis(numbers(steps, "time"))) {}
 
     [[nodiscard]] Chart chart(std::string title, std::string unit, Chart::Marks marks,
                               std::initializer_list<Source> sources, double scale = 1) const {
-        Chart c{std::move(title), std::move(unit), x_, x_title_, {}, marks};
+        Chart c{std::move(title), std::move(unit), time_.values, time_.title, {}, marks};
         for (const Source& source : sources) {
             c.series.push_back({source.name, numbers(steps_, source.column)});
             for (double& value : c.series.back().values) value *= scale;
@@ -58,8 +51,7 @@ public:
 
 private:
     const Table& steps_;
-    std::vector<double> x_;
-    std::string x_title_;
+    TimeAxis time_;
 };
 
 std::string draw_charts(const RunFiles& run, const RunSummary& summary) {
@@ -107,11 +99,6 @@ std::string draw_charts(const RunFiles& run, const RunSummary& summary) {
     return "<section><h2>Over time</h2><div class=\"charts\">" + html + "</div></section>";
 }
 
-std::string tile(const std::string& name, const std::string& value) {
-    return "<div class=\"tile\"><b>" + escaped(value) + "</b><span class=\"soft\">" + escaped(name) +
-           "</span></div>";
-}
-
 std::string draw_head(const RunFiles& run, const RunSummary& s) {
     const Verdict v = verdict(s);
     const char* kind = v.kind == Verdict::Kind::good  ? "good"
@@ -127,12 +114,6 @@ std::string draw_head(const RunFiles& run, const RunSummary& s) {
            tile("mesh", readable_time(s.mesh_seconds)) +
            tile("simulation", readable_time(s.simulate_seconds)) +
            tile("transfer", readable_time(s.transfer_seconds)) + "</div>";
-}
-
-std::string table_row(const char* cell, std::initializer_list<std::string> values) {
-    std::string html = "<tr>";
-    for (const std::string& value : values) html += std::string("<") + cell + ">" + value + "</" + cell + ">";
-    return html + "</tr>";
 }
 
 /// The sizes of the bodies, as asked for and as the mesh has them.
@@ -176,16 +157,10 @@ std::string draw_steps(const RunFiles& run, const RunSummary& summary, const Pag
 void write_report(const std::filesystem::path& dir, const PageOptions& options) {
     const RunFiles run = read_run_files(dir);
     const RunSummary summary = summarise_run(run);
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/><title>" +
-        escaped(run.name) + " – Kropla</title><style>" + std::string(page_style) +
-        "</style></head>\n<body><main>";
-    html += draw_head(run, summary) + '\n' + draw_ending(run);
+    std::string html = draw_head(run, summary) + '\n' + draw_ending(run);
     if (!run.steps.columns.empty()) html += draw_steps(run, summary, options);
-    html += "<p class=\"soft\">Drawn from the files of the run; <code>kropla report</code> draws it again.</p></main>"
-            "</body></html>\n";
-    write_file(dir / "report.html", html, options.watch);
+    html += "<p class=\"soft\">Drawn from the files of the run; <code>kropla report</code> draws it again.</p>";
+    write_file(dir / "report.html", html_page(run.name, html), options.watch);
 }
 
 }  // namespace kropla

@@ -9,14 +9,12 @@
 namespace kropla {
 namespace {
 
-std::string folder_name(const std::filesystem::path& dir) {
-    const std::filesystem::path whole = std::filesystem::absolute(dir).lexically_normal();
-    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
-}
-
-/// Without blanks and without what follows '#'.
+/// Without blanks and without what follows '#'; of `key = "formula"  # = number` with the number for the formula.
 std::string stripped(std::string_view line) {
-    std::string text(line.substr(0, line.find('#')));
+    constexpr std::string_view value = "  # = ";
+    const std::size_t known = line.find(value);
+    std::string text(line.substr(0, line.find(known == std::string_view::npos ? '#' : '=')));
+    if (known != std::string_view::npos) text += '=' + std::string(line.substr(known + value.size()));
     std::erase_if(text, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '_'; });
     return text;
 }
@@ -65,6 +63,11 @@ RunFiles without_steps(const std::filesystem::path& dir) {
 }
 
 }  // namespace
+
+std::string folder_name(const std::filesystem::path& dir) {
+    const std::filesystem::path whole = std::filesystem::absolute(dir).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
 
 RunFiles read_run_files(const std::filesystem::path& dir) {
     const bool ended = std::filesystem::exists(dir / ending_name);

@@ -32,12 +32,15 @@ struct RunFiles {
     std::optional<Ending> ending = {};
 };
 
+/// What a folder is called, however the path to it is written.
+[[nodiscard]] std::string folder_name(const std::filesystem::path& dir);
+
 /// Reads DIR/case.toml, steps.csv and frames.pvd, and bodies.csv and ended.toml where they are there. Throws FileError,
 /// naming the file, if another is missing or one is broken. Of a run that ended before its first step there may be ended.toml alone.
 [[nodiscard]] RunFiles read_run_files(const std::filesystem::path& dir);
 
 /// The number that stands as `key` in the table `[section]` of a case as run; nothing if there is none. It
-/// knows the plain form in which a run writes its case, not all of TOML.
+/// knows the plain form in which a run writes its case, with the values of expressions behind them, not all of TOML.
 [[nodiscard]] std::optional<double> number_of_case(std::string_view case_text, std::string_view section,
                                                    std::string_view key);
 

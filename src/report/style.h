@@ -66,6 +66,7 @@ path.limit { stroke: var(--limit); stroke-width: 1.6; stroke-dasharray: 6 4; }
 .r4 { fill: var(--r4); } .p0 { fill: var(--p0); } .p1 { fill: var(--r1); fill-opacity: .55; }
 .p2 { fill: var(--r2); fill-opacity: .55; } .p3 { fill: var(--r3); fill-opacity: .55; }
 .p4 { fill: var(--r4); fill-opacity: .55; }
+.wide { overflow-x: auto; } .wide td { white-space: nowrap; }
 table { border-collapse: collapse; width: 100%; } td { padding: 5px 10px 5px 0;
   border-bottom: 1px solid var(--rule); }
 th { padding: 5px 10px 5px 0; text-align: left; font-weight: 600; }

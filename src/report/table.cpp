@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -15,13 +16,18 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (std::size_t start = 0; start <= line.size();) {
-        const std::size_t end = std::min(line.find(',', start), line.size());
-        cells.push_back(trimmed(line.substr(start, end - start)));
-        start = end + 1;
+/// A cell with commas stands in quotes, which are doubled within (RFC 4180).
+std::vector<std::string> cells_of(std::string_view line) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const bool doubled = quoted && line.substr(i, 2) == "\"\"";
+        if (line[i] == '"' && !doubled) quoted = !quoted;
+        else if (line[i] == ',' && !quoted) cells.emplace_back();
+        else cells.back() += line[i];
+        if (doubled) ++i;
     }
+    for (std::string& cell : cells) cell = trimmed(cell);
     return cells;
 }
 
@@ -35,9 +41,9 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 }
 
 Column column_named(std::string_view header) {
-    const std::size_t bracket = header.find('[');
+    const std::size_t bracket = header.find(" [");  // without the blank it is a part of the name: body[0].radius
     if (bracket == std::string_view::npos) return {std::string(header), "", {}};
-    const std::string_view unit = header.substr(bracket + 1);
+    const std::string_view unit = header.substr(bracket + 2);
     return {std::string(trimmed(header.substr(0, bracket))), std::string(unit.substr(0, unit.find(']'))), {}};
 }
 
@@ -49,14 +55,14 @@ Table parse_table(std::string_view text, const std::string& file) {
     const std::vector<std::string_view> lines = lines_of(text);
     if (lines.empty()) throw FileError(file + ": has no line of column names");
     Table table{.file = file, .rows = lines.size() - 1, .columns = {}};
-    for (const std::string_view header : cells_of(lines[0])) table.columns.push_back(column_named(header));
+    for (const std::string& header : cells_of(lines[0])) table.columns.push_back(column_named(header));
     for (std::size_t row = 1; row < lines.size(); ++row) {
-        const std::vector<std::string_view> cells = cells_of(lines[row]);
+        std::vector<std::string> cells = cells_of(lines[row]);
         if (cells.size() != table.columns.size()) {
             throw FileError(file + ": row " + std::to_string(row) + " has " + std::to_string(cells.size()) +
                             " cells, not " + std::to_string(table.columns.size()));
         }
-        for (std::size_t i = 0; i < cells.size(); ++i) table.columns[i].cells.emplace_back(cells[i]);
+        for (std::size_t i = 0; i < cells.size(); ++i) table.columns[i].cells.push_back(std::move(cells[i]));
     }
     return table;
 }

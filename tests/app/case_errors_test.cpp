@@ -61,7 +61,8 @@ TEST(CaseErrors, MissingKeys) {
 TEST(CaseErrors, WrongTypes) {
     expect_refusals({
         {"radius = 0.001", "radius = \"big\"",
-         "body[0].radius (line 8): must be a finite number, got \"big\""},
+         "body[0].radius (line 8): must be a finite number, got \"big\": \"big\" at character 1 is not known; known are "
+         "pi and functions such as sin, exp, sqrt"},
         {"name = \"droplet\"", "name = 3", "body[0].name (line 5): must be a text in quotes, got 3"},
         {"max_aspect_ratio = 9.5", "method = \"papers\"",
          "quality.method (line 24): must be \"kropla\" or \"paper\", got \"papers\""},

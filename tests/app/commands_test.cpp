@@ -32,7 +32,7 @@ TEST(Arguments, ArePartedIntoThoseOfTheSolverAndTheRest) {
 TEST(Program, HelpsAndTellsItsVersion) {
     const TemporaryFolder folder;
     for (const char* arguments :
-         {"--help", "run --help", "mesh --help", "check --help", "report --help", "new --help"}) {
+         {"--help", "run --help", "sweep --help", "mesh --help", "check --help", "report --help", "new --help"}) {
         SCOPED_TRACE(arguments);
         const Outcome it = kropla_program(folder, arguments);
         EXPECT_EQ(it.code, 0);
@@ -122,7 +122,7 @@ TEST(Program, SaysWhatWasPerhapsMeant) {
     write(folder.path / "a.toml", std::string(starting_case()));
     expect_complaint(kropla_program(folder, "rum a.toml --out d"), 2, "rum: unknown command; did you mean \"run\"?");
     expect_complaint(kropla_program(folder, "foo"), 2,
-                     "foo: unknown command; known here: run, mesh, check, report, new");
+                     "foo: unknown command; known here: run, sweep, mesh, check, report, new");
     expect_complaint(kropla_program(folder, "run a.toml --out d --theads 2"), 2,
                      "--theads: unknown option of kropla run; did you mean \"--threads\"?");
     expect_complaint(kropla_program(folder, "run a.toml --theads=2"), 2,

@@ -43,6 +43,26 @@ TEST(Expression, CopiesShareNothing) {
     EXPECT_EQ(moved(5), 6);
 }
 
+TEST(Expression, KnowsConstantsByName) {
+    const Constants constants = {{"current", 150}, {"d_0", 2}, {"e5", 7}};
+    EXPECT_EQ(Expression("current*t + d_0", Variables::time, constants)(2), 302);
+    EXPECT_EQ(Expression("current/d_0 + 1e5 + e5", Variables::none, constants)(0), 100082);
+    const Expression first("current*t", Variables::time, constants);
+    const Expression copy = first;
+    EXPECT_EQ(copy(3), 450);
+    EXPECT_THROW(Expression("current*t", Variables::none, constants), CaseError);
+}
+
+TEST(Expression, NamesWhatItSpeaksOf) {
+    EXPECT_EQ(names_in("2*current + sin(pi*t) - current^1e5 + 1.5e-3*e5"),
+              (std::vector<std::string>{"current", "sin", "pi", "t", "e5"}));
+    EXPECT_TRUE(names_in("").empty());
+    EXPECT_TRUE(is_variable("T"));
+    EXPECT_FALSE(is_variable("pi"));
+    for (const char* name : {"pi", "_pi", "_e", "sin", "min", "sqrt"}) EXPECT_TRUE(is_of_language(name)) << name;
+    EXPECT_FALSE(is_of_language("current"));
+}
+
 TEST(Expression, AnswersSeveralThreads) {
     const Expression square("x*x + t", Variables::time_and_place);
     std::vector<int> wrong(4, 0);

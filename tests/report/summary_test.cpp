@@ -33,9 +33,10 @@ TEST(Summary, JudgesTheRun) {
 }
 
 TEST(Summary, ReadsNumbersOfTheCase) {
-    const std::string text = "[a]\nmax_x = 1\n[b]\nmax_x = 2.5  # [m]\nother = \"3\"\n[b.c]\nlast = 1e-3";
+    const std::string text = "[a]\nmax_x = 1\n[b]\nmax_x = 2.5  # [m]\nother = \"3\"\n[b.c]\nlast = 1e-3\nend = \"n*dt\"  # = 2e-3";
     EXPECT_EQ(number_of_case(text, "b", "max_x"), 2.5);
     EXPECT_EQ(number_of_case(text, "b.c", "last"), 1e-3);
+    EXPECT_EQ(number_of_case(text, "b.c", "end"), 2e-3);
     EXPECT_FALSE(number_of_case(text, "b", "other"));
     EXPECT_FALSE(number_of_case(text, "b", "last"));
     EXPECT_FALSE(number_of_case("", "b", "last"));

@@ -47,5 +47,14 @@ TEST(Table, RefusesWhatIsBrokenAndSaysWhere) {
               std::string::npos);
 }
 
+TEST(Table, KnowsCellsInQuotes) {
+    const Table table = parse_table("run,body[0].radius,\"a,b\"\n\"r=1,d=2\",3,\"say \"\"no\"\", twice\"\nx,,\"\"\n", "a.csv");
+    ASSERT_EQ(table.columns.size(), 3u);
+    EXPECT_EQ(table.columns[1].name, "body[0].radius");
+    EXPECT_EQ(table.columns[2].name, "a,b");
+    EXPECT_EQ(table.columns[0].cells, (std::vector<std::string>{"r=1,d=2", "x"}));
+    EXPECT_EQ(table.columns[2].cells, (std::vector<std::string>{"say \"no\", twice", ""}));
+}
+
 }  // namespace
 }  // namespace kropla
