@@ -12,7 +12,7 @@ namespace {
 
 /// `key = value`, or as it was written if that is an expression, with the value behind it.
 template <class Value>
-std::string line(const Case& it, const std::string& table, const char* key, const Value& value) {
+std::string line(const Case& it, const std::string& table, std::string_view key, const Value& value) {
     const auto written = it.written_numbers.find(fmt::format("{}.{}", table, key));
     return written == it.written_numbers.end() ? fmt::format("{} = {}\n", key, value)
                                                : fmt::format("{} = {}  # = {}\n", key, written->second, value);

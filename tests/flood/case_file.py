@@ -54,12 +54,23 @@ class Case:
         self.every = case.get("output", {}).get("every", 1)
         self.floor = case.get("quality", {}).get("max_aspect_ratio", 10.0)
         self.heat_capacity, self.sources, self.fluxes, self.supply_known = None, {}, 0.0, False
+        self.temperatures = None  # (least, most) [K] that there may be, where that is known
         if "heat" not in case:
             return
         names = ["surroundings"] + [body.name for body in self.scene.bodies]
         regions = [case["heat"]["region"][name] for name in names]
         self.heat_capacity = [region["density"] * region["specific_heat"] for region in regions]
-        self.read_supply(regions, case["heat"].get("face", {}))
+        faces = case["heat"].get("face", {})
+        self.read_supply(regions, faces)
+        self.read_bounds(regions, faces)
+
+    def read_bounds(self, regions, faces):
+        """The temperatures that conduction and convection allow, unless something heats or cools, or is a formula."""
+        values = [face.get("value") for face in faces.values() if face != "insulated"]
+        if any("source" in region for region in regions) or not all(isinstance(v, (int, float)) for v in values):
+            return
+        values += [region["initial"] for region in regions]
+        self.temperatures = min(values), max(values)
 
     def read_supply(self, regions, faces):
         written = {number: region["source"] for number, region in enumerate(regions) if "source" in region}

@@ -164,7 +164,8 @@ def estimated_cells(rng, scene):
         if body.layer:
             radius = body.shape.volume() ** (1 / 3)
             sides = 2 if body.layer.side == "both" else 1
-            cells += sides * body.layer.count * 4.8 * radius**2 / (0.433 * scene.surface_size(body) ** 2)
+            size = scene.surface_size(body)  # zero where there is no room for a layer: not legal
+            cells += sides * body.layer.count * 4.8 * radius**2 / (0.433 * size**2) if size > 0 else math.inf
     return cells
 
 

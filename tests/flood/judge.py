@@ -14,6 +14,8 @@ LEAST_JACOBIAN = 0.1  # [-] scaled, of a prism's corners: the floor of prisms
 LEAST_GAP = 0.25  # [surface sizes] that bodies' triangulated surfaces must keep
 TRANSFER_ERROR = 1e-12  # [-]
 CONSERVED = 1e-10  # [-] of an insulated box's energy
+BEYOND = 1e-10  # [-] of the range of temperatures
+ROUNDING = 1e-14  # [-] of the largest
 SUPPLIED = 1e-8  # [-] of the energy, where heat comes in
 
 
@@ -69,6 +71,8 @@ def check_frames(case, rows, frames, verdict):
             verdict.faults.append(f"{path.name}: worst R/r {figures.worst_ratio}, above {case.floor}")
         if figures.least_jacobian < LEAST_JACOBIAN * (1 - 1e-9):
             verdict.faults.append(f"{path.name}: a prism's scaled Jacobian is {figures.least_jacobian}")
+        if case.temperatures:
+            check_bounds(case.temperatures, path.name, frame.temperature, verdict)
         first = first or figures
         for region, volume in figures.volumes.items():
             drift = abs(volume / first.volumes.get(region, math.nan) - 1)
@@ -82,6 +86,14 @@ def check_frames(case, rows, frames, verdict):
         if row:
             check_row(case, row, frame, figures, verdict)
     return first
+
+
+def check_bounds(bounds, name, temperature, verdict):
+    """No temperature is beyond those that there were and that hold at faces."""
+    least, most = bounds
+    room = BEYOND * (most - least) + ROUNDING * max(abs(least), abs(most))
+    if min(temperature) < least - room or max(temperature) > most + room:
+        verdict.faults.append(f"{name}: temperatures {min(temperature)} to {max(temperature)} K, of {least} to {most} K allowed")
 
 
 def check_row(case, row, frame, figures, verdict):
