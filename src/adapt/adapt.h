@@ -27,7 +27,7 @@ struct Changes {
     int smoothing_sweeps = 0, moved = 0, swaps = 0, splits = 0, collapses = 0;
     int local_remeshes = 0, largest_ring = 0, global_remeshes = 0;
     int cells_replaced = 0, vertices_inserted = 0;
-    int treated = 0;  // bad cells for which a remedy was sought
+    int treated = 0;  // bad cells for which an operator was sought that helps
     int cut_out = 0;  // cells of the clusters that were cut out, whether or not it helped
     int given_up = 0; // bad cells that were left as they are since a budget was spent
 
@@ -115,7 +115,7 @@ struct AdaptOptions {
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
     double split_above = 1.59;        // [target sizes] longer edges are split
     double collapse_below = 0.625;    // [target sizes] shorter edges are collapsed
-    double treatments = 30;           // of bad cells that `improve` may seek a remedy for, per bad cell it begins with
+    double treatments = 30;           // of bad cells that `improve` may seek an operator for, per bad cell it begins with
     double cut_out = 5;               // cells that may be cut out in clusters, per cell looked at
     bool clusters = true;             // what nothing else helps is re-triangulated with the ring around it
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one

@@ -1,7 +1,7 @@
 // Motion of bodies through the mesh. Bodies move rigidly; their displacement is spread into the surroundings
 // by weights that fall with the distance, as in [Luke, Collins, Blades 2012], "A fast mesh deformation method
 // using explicit interpolation". Here a body's displacement is that of its rigid motion at the vertex, and
-// how much of it is felt follows the cells' size, so that cells stream past the body instead of being
+// the share of it that a vertex takes follows the cells' size, so that cells stream past the body instead of being
 // squeezed and torn; vertices on the faces of the box slide along; and a body reaches no farther than a few
 // of its own sizes.
 
@@ -19,7 +19,7 @@
 namespace kropla {
 namespace {
 
-constexpr double reach_in_body_sizes = 6.0;    // how far a displacement is felt
+constexpr double reach_in_body_sizes = 6.0;    // how far a displacement goes
 constexpr double most_reach = 10.0;             // in a narrow box, where that is no more work
 constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
 
@@ -68,7 +68,7 @@ double volume_within(const Box& box, const Vec3& x, double reach) {
     return volume;
 }
 
-/// How far a body's displacement is felt. The farther, the less each cell is strained; so where walls cut away a part
+/// How far a body's displacement goes. The farther, the less each cell is strained; so where walls cut away a part
 /// of what is in reach, it goes farther, to about as many cells.
 double reach_of(const Shape& shape, const Domain& domain) {
     constexpr double step = 0.25;
@@ -110,7 +110,7 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
 /// The share of a body's motion that the mesh takes part in at a distance from it. Seen from the body, cells
 /// stream past; with their size h rising outwards, as many vertices enter any part as leave it if the stream
 /// is as h^3.
-double felt(const SizeField& size, double distance, double reach) {
+double displacement_share(const SizeField& size, double distance, double reach) {
     if (distance >= reach) return 0;
     const auto volume_at = [&](double d) {
         const double h = size.surface + size.growth * d;
@@ -137,7 +137,7 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
     for (std::size_t i = 0; i < travels.size(); ++i) {
         const double d = distance_to_body(at, i, x);
         if (d == 0) return travels[i].displacement(x);
-        const double share = felt(at.size, d, travels[i].reach);
+        const double share = displacement_share(at.size, d, travels[i].reach);
         total += 1 / (d * d);
         sum += share / (d * d) * travels[i].displacement(x);
         least = std::min(least, d);
@@ -171,7 +171,7 @@ void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Trav
             wall.push_back(zone.place[column_vertex(layer, column, 0)]);
         const auto places = column_places(layer, wall, at_end);
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (i % static_cast<std::size_t>(layer.count + 1) != 0) zone.place[layer.columns[i]] = places[i];
+            if (i % as_size(layer.count + 1) != 0) zone.place[layer.columns[i]] = places[i];
     }
 }
 

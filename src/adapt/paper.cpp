@@ -86,9 +86,8 @@ std::optional<Cavity> best_swap(const Mesh& mesh, Tet t) {
         bound = cavity->worst_after;
         best = std::move(cavity);
     };
-    const auto& v = mesh.tets[t];
-    for (const auto& [i, j] : tet_edges) {
-        const Edge edge{v[static_cast<std::size_t>(i)], v[static_cast<std::size_t>(j)]};
+    for (std::size_t k = 0; k < tet_edges.size(); ++k) {
+        const Edge edge = tet_edge(mesh, t, k);
         look_at(edge_removal(mesh, shell(mesh, edge, t), edge, {false, bound}));
     }
     for (int i = 0; i < 4; ++i) look_at(face_removal(mesh, {t, i}, {false, bound}));

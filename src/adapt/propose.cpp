@@ -10,8 +10,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// How often a facet stands in the cells removed and added, and whether it has a patch where it is on the boundary.
 struct Uses {
     int removed = 0, added = 0;
@@ -22,22 +20,21 @@ using FacetUses = std::map<std::array<Vertex, 3>, Uses>;
 
 FacetUses facet_uses(const Mesh& mesh, const Cavity& cavity) {
     FacetUses uses;
-    const auto of = [&](const std::array<Vertex, 4>& v, std::size_t corner) -> Uses& {
-        const auto& [i, j, k] = tet_facets[corner];
-        std::array<Vertex, 3> facet = {v[at(i)], v[at(j)], v[at(k)]};
+    const auto of = [&](const std::array<Vertex, 4>& v, int corner) -> Uses& {
+        auto facet = facet_vertices(v, corner);
         std::ranges::sort(facet);
         return uses[facet];
     };
-    for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (int corner = 0; corner < 4; ++corner) {
         for (Tet t : cavity.removed) {
             Uses& facet = of(mesh.tets[t], corner);
             ++facet.removed;
-            facet.bounds_removed |= !mesh.neighbour[t][corner].exists();
+            facet.bounds_removed |= !mesh.neighbour[t][as_size(corner)].exists();
         }
         for (const NewTet& t : cavity.added) {
             Uses& facet = of(t.vertices, corner);
             ++facet.added;
-            facet.bounds_added |= t.patch[corner].exists();
+            facet.bounds_added |= t.patch[as_size(corner)].exists();
         }
     }
     return uses;
@@ -50,7 +47,7 @@ bool closes(const Uses& facet) {
 
 /// Has a cell that is not removed all of these vertices?
 bool stands_elsewhere(const Mesh& mesh, std::span<const Vertex> vertices, const std::set<Tet>& removed) {
-    const auto is_known = [&](Vertex v) { return at(v.value) < mesh.position.size() && alive(mesh, v); };
+    const auto is_known = [&](Vertex v) { return as_size(v.value) < mesh.position.size() && alive(mesh, v); };
     if (!std::ranges::all_of(vertices, is_known)) return false;
     const auto around = ball(mesh, vertices.front());
     return std::ranges::any_of(around, [&](Tet t) {

@@ -22,12 +22,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // vertices can go although others are too few: what is squeezed along one axis is torn along another.
 constexpr double longest_after_collapse = 1.05;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The vertices of `t` with `to` in the place of `from`.
 std::array<Vertex, 4> with_replaced(const Mesh& mesh, Tet t, Vertex from, Vertex to) {
     auto v = mesh.tets[t];
-    v[at(corner_of(mesh, t, from))] = to;
+    v[as_size(corner_of(mesh, t, from))] = to;
     return v;
 }
 
@@ -155,8 +153,8 @@ void tell_wrong(const FourPlaces& places, const std::array<Four, 4>& sizes, Boun
 }
 
 void find_wrong_edges(const Mesh& mesh, const Zone& zone, Tet t, Bounds bounds, std::vector<WrongEdge>& wrong) {
-    for (const auto& [i, j] : tet_edges) {
-        const Vertex a = mesh.tets[t][at(i)], b = mesh.tets[t][at(j)];
+    for (std::size_t k = 0; k < tet_edges.size(); ++k) {
+        const auto [a, b] = tet_edge(mesh, t, k);
         const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
         if (!bounds.broken(square, size)) continue;
         wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});

@@ -95,7 +95,7 @@ void star_of_ball(const Mesh& mesh, Vertex v, std::span<const Tet> ball, std::ve
 Freedom freedom(const Constraint& c) {
     Freedom f;
     for (int axis = 0; axis < 3; ++axis)
-        f.along[static_cast<std::size_t>(axis)] = !c.rigid() && (c.patches & (3u << (2 * axis))) == 0;
+        f.along[as_size(axis)] = !c.rigid() && (c.patches & (3u << (2 * axis))) == 0;
     return f;
 }
 

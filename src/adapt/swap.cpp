@@ -20,8 +20,6 @@ constexpr double least_gain = 1e-3;         // relative fall of the worst ratio 
 constexpr double least_energy_gain = 0.05;  // and of the energy
 constexpr std::size_t most = longest_ring;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 using Corners = std::array<const Vec3*, 4>;
 
 /// What a set of cells is worth: the worst of them, or their sum.
@@ -141,11 +139,11 @@ void add_tets(const RingTriangles& of, const RingTable& table, std::size_t i, st
 }  // namespace
 
 std::optional<Cavity> face_removal(const Mesh& mesh, Facet facet, SwapGoal goal) {
-    const Tet below = facet.tet, above = mesh.neighbour[below][at(facet.corner)];
+    const Tet below = facet.tet, above = mesh.neighbour[below][as_size(facet.corner)];
     if (!above.exists() || mesh.region[above] != mesh.region[below]) return std::nullopt;
     const auto f = facet_vertices(mesh, facet);
-    const Vertex p = mesh.tets[below][at(facet.corner)];
-    const Vertex q = mesh.tets[above][at(mirror_corner(mesh, facet))];
+    const Vertex p = mesh.tets[below][as_size(facet.corner)];
+    const Vertex q = mesh.tets[above][as_size(mirror_corner(mesh, facet))];
 
     const Measure measure{goal};
     std::array<Corners, 3> around;

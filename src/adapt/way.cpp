@@ -14,8 +14,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Six times the volume of a tet as its corners go along straight lines, as a cubic in the fraction s of the
 /// way: its four Bernstein coefficients on [0, 1].
 std::array<double, 4> volume_along(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de) {
@@ -52,8 +50,8 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displac
     const auto& v = mesh.tets[t];
     std::array<Vec3, 3> e, de;
     for (int i = 0; i < 3; ++i) {
-        e[at(i)] = mesh.position[v[at(i + 1)]] - mesh.position[v[0]];
-        de[at(i)] = displacement[v[at(i + 1)]] - displacement[v[0]];
+        e[as_size(i)] = mesh.position[v[as_size(i + 1)]] - mesh.position[v[0]];
+        de[as_size(i)] = displacement[v[as_size(i + 1)]] - displacement[v[0]];
     }
     return positive_share(e, de, least);
 }
@@ -63,8 +61,8 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& start, 
     const auto& v = mesh.tets[t];
     std::array<Vec3, 3> e, de;
     for (int i = 0; i < 3; ++i) {
-        e[at(i)] = start[v[at(i + 1)]] - start[v[0]];
-        de[at(i)] = place[v[at(i + 1)]] - place[v[0]] - e[at(i)];
+        e[as_size(i)] = start[v[as_size(i + 1)]] - start[v[0]];
+        de[as_size(i)] = place[v[as_size(i + 1)]] - place[v[0]] - e[as_size(i)];
     }
     return positive_share(e, de, least);
 }

@@ -9,8 +9,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Makes room for what the mesh has.
 void fit(Zone& zone, const Mesh& mesh) {
     const std::size_t vertices = mesh.position.size(), tets = mesh.tets.size();
@@ -29,12 +27,12 @@ void fit(Zone& zone, const Mesh& mesh) {
 
 /// What the facet opposite the corner lets its vertices do: the axes along which they may slide, or `rim`.
 unsigned char axes_at(const Zone& zone, const Mesh& mesh, Tet t, int corner) {
-    const Tet n = mesh.neighbour[t][at(corner)];
+    const Tet n = mesh.neighbour[t][as_size(corner)];
     if (n.exists()) {
         if (mesh.region[n] != mesh.region[t]) return 0;
         return zone.holds.contains(n) ? Zone::all_axes : Zone::rim;
     }
-    const Patch patch = mesh.patch[t][at(corner)];
+    const Patch patch = mesh.patch[t][as_size(corner)];
     return patch.value < box_faces ? static_cast<unsigned char>(Zone::all_axes & ~(1 << patch.value / 2)) : 0;
 }
 
@@ -42,7 +40,7 @@ unsigned char axes_of(const Zone& zone, const Mesh& mesh, Vertex v) {
     unsigned char axes = Zone::all_axes, rim = 0;
     for (Tet t : zone.ball[v])
         for (int corner = 0; corner < 4; ++corner) {
-            if (mesh.tets[t][at(corner)] == v) continue;
+            if (mesh.tets[t][as_size(corner)] == v) continue;
             const unsigned char here = axes_at(zone, mesh, t, corner);
             axes &= here;
             rim |= here & Zone::rim;
@@ -90,7 +88,7 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
     IndexSet<Vertex> touched;
     replaced.for_each([&](Tet t) {
         zone.holds.erase(t);
-        if (at(t.value) >= mesh.tets.size() || !alive(mesh, t)) return;
+        if (as_size(t.value) >= mesh.tets.size() || !alive(mesh, t)) return;
         for (Vertex v : mesh.tets[t]) touched.insert(v);
         if (mesh.region[t] == surroundings) cells.push_back(t);
     });
@@ -112,7 +110,7 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
         if (zone.axes[v] != Zone::all_axes) zone.axes[v] = axes_of(zone, mesh, v);
     });
     zone.has.for_each([&](Vertex v) {
-        if (at(v.value) < mesh.position.size() && alive(mesh, v) && !zone.ball[v].empty()) return;
+        if (as_size(v.value) < mesh.position.size() && alive(mesh, v) && !zone.ball[v].empty()) return;
         zone.ball[v].clear();
         zone.has.erase(v);
     });

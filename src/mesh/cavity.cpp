@@ -8,8 +8,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// A facet of a removed or of an added tet, in two words, as many are sorted: its vertices in ascending order;
 /// whether its tet is added; which of the removed or added ones that is; its corner.
 struct Side {
@@ -40,8 +38,7 @@ struct Join {
 };
 
 std::array<Vertex, 3> ascending(const std::array<Vertex, 4>& v, int corner) {
-    const auto& c = tet_facets[at(corner)];
-    std::array<Vertex, 3> key = {v[at(c[0])], v[at(c[1])], v[at(c[2])]};
+    auto key = facet_vertices(v, corner);
     if (key[1] < key[0]) std::swap(key[0], key[1]);
     if (key[2] < key[1]) std::swap(key[1], key[2]);
     if (key[1] < key[0]) std::swap(key[0], key[1]);
@@ -59,8 +56,8 @@ std::vector<Tet> checked_cells(const Mesh& mesh, const Cavity& cavity) {
     const auto first_taken = mesh.free_vertices.end() - static_cast<std::ptrdiff_t>(taken);
     const std::size_t size = mesh.position.size() + cavity.inserted.size() - taken;
     const auto exists = [&](Vertex v) {
-        if (!v.exists() || at(v.value) >= size) return false;
-        if (at(v.value) >= mesh.position.size() || alive(mesh, v)) return true;
+        if (!v.exists() || as_size(v.value) >= size) return false;
+        if (as_size(v.value) >= mesh.position.size() || alive(mesh, v)) return true;
         return std::find(first_taken, mesh.free_vertices.end(), v) != mesh.free_vertices.end();
     };
     for (const NewTet& tet : cavity.added)
@@ -75,7 +72,7 @@ std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity, std::span
     sides.reserve(4 * (cavity.removed.size() + cavity.added.size()));
     for (int corner = 0; corner < 4; ++corner) {
         for (std::size_t i = 0; i < cavity.removed.size(); ++i)
-            if (!std::ranges::binary_search(removed, mesh.neighbour[cavity.removed[i]][at(corner)]))
+            if (!std::ranges::binary_search(removed, mesh.neighbour[cavity.removed[i]][as_size(corner)]))
                 sides.emplace_back(ascending(mesh.tets[cavity.removed[i]], corner), false, i, corner);
         for (std::size_t i = 0; i < cavity.added.size(); ++i)
             sides.emplace_back(ascending(cavity.added[i].vertices, corner), true, i, corner);
@@ -110,17 +107,17 @@ void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> be
         joins.push_back({after[1].which(), after[1].corner(), names[after[0].which()], -1, Patch{}});
     } else if (after.size() == 1 && before.size() == 1) {
         const Facet f = outer(before[0]);
-        const Tet n = mesh.neighbour[f.tet][at(f.corner)];
+        const Tet n = mesh.neighbour[f.tet][as_size(f.corner)];
         joins.push_back({after[0].which(), after[0].corner(), n, n.exists() ? mirror_corner(mesh, f) : -1,
-                         mesh.patch[f.tet][at(f.corner)]});
+                         mesh.patch[f.tet][as_size(f.corner)]});
     } else if (after.size() == 1) {
-        const Patch patch = cavity.added[after[0].which()].patch[at(after[0].corner())];
+        const Patch patch = cavity.added[after[0].which()].patch[as_size(after[0].corner())];
         if (!patch.exists())
             throw std::logic_error("replace_cells: an added facet has no other side and no patch");
         joins.push_back({after[0].which(), after[0].corner(), Tet{}, -1, patch});
     } else if (before.size() == 1) {
         const Facet f = outer(before[0]);
-        if (mesh.neighbour[f.tet][at(f.corner)].exists())
+        if (mesh.neighbour[f.tet][as_size(f.corner)].exists())
             throw std::logic_error("replace_cells: a facet around the cavity would be lost");
     }
 }
@@ -211,9 +208,9 @@ std::vector<Tet> replace_cells(Mesh& mesh, const Cavity& cavity) {
     insert_vertices(mesh, cavity.inserted, touched);
     write_added(mesh, cavity, names);
     for (const Join& j : joins) {
-        mesh.neighbour[names[j.added]][at(j.corner)] = j.neighbour;
-        mesh.patch[names[j.added]][at(j.corner)] = j.patch;
-        if (j.neighbour_corner >= 0) mesh.neighbour[j.neighbour][at(j.neighbour_corner)] = names[j.added];
+        mesh.neighbour[names[j.added]][as_size(j.corner)] = j.neighbour;
+        mesh.patch[names[j.added]][as_size(j.corner)] = j.patch;
+        if (j.neighbour_corner >= 0) mesh.neighbour[j.neighbour][as_size(j.neighbour_corner)] = names[j.added];
     }
     free_lost_vertices(mesh, touched);
     return names;
