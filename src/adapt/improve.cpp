@@ -308,7 +308,6 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
         allowed.treatments.take(static_cast<double>(asked.size()));
         changes.treated += static_cast<int>(asked.size());
         const Operators operators{mesh, at_time, options, changed, !allowed.splits.spent()};
-        const Vertex next = next_vertex(mesh);
         const auto ask = [&](std::size_t i) { return operators.first_that_helps(asked[i]); };
         auto operations = propose_all(asked.size(), ask, options.watch);
         std::vector<Tet> again;
@@ -321,7 +320,6 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
                 again.push_back(asked[which].cell);
                 continue;
             }
-            rename_inserted(operation.cavity, next, mesh);
             if (tangled && operation.kind != Kind::move && !fits(mesh, operation.cavity)) {
                 stuck.push_back(asked[which].cell);
                 continue;
@@ -400,8 +398,8 @@ Changes& Changes::operator+=(const Changes& other) {
 }
 
 void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
-    for (std::size_t k = 0; k < cavity.inserted.size(); ++k) changes.vertices.push_back(next_vertex(mesh, k));
-    const auto added = replace_cells(mesh, cavity);
+    const auto [added, inserted] = replace_cells(mesh, cavity);
+    changes.vertices.insert(changes.vertices.end(), inserted.begin(), inserted.end());
     changes.cells.insert(changes.cells.end(), added.begin(), added.end());
     changes.removed.insert(changes.removed.end(), cavity.removed.begin(), cavity.removed.end());
     changes.cells_replaced += static_cast<int>(cavity.removed.size());

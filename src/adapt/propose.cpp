@@ -47,7 +47,7 @@ bool closes(const Uses& facet) {
 
 /// Has a cell that is not removed all of these vertices?
 bool stands_elsewhere(const Mesh& mesh, std::span<const Vertex> vertices, const std::set<Tet>& removed) {
-    const auto is_known = [&](Vertex v) { return as_size(v.value) < mesh.position.size() && alive(mesh, v); };
+    const auto is_known = [&](Vertex v) { return v.exists() && alive(mesh, v); };
     if (!std::ranges::all_of(vertices, is_known)) return false;
     const auto around = ball(mesh, vertices.front());
     return std::ranges::any_of(around, [&](Tet t) {
@@ -81,12 +81,6 @@ bool fits(const Mesh& mesh, const Cavity& cavity) {
             if (!edges.contains(edge) && stands_elsewhere(mesh, edge, removed)) return false;
     }
     return !cavity.added.empty();
-}
-
-void rename_inserted(Cavity& cavity, Vertex then, const Mesh& now) {
-    if (cavity.inserted.empty()) return;
-    const Vertex name = next_vertex(now);
-    for (NewTet& tet : cavity.added) std::ranges::replace(tet.vertices, then, name);
 }
 
 }  // namespace kropla

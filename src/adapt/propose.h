@@ -60,8 +60,4 @@ private:
 /// positive, too; but not in one that is tangled, where cells lie over each other.
 [[nodiscard]] bool fits(const Mesh& mesh, const Cavity& cavity);
 
-/// Makes a proposal that inserts one vertex, made when `then` was the next to be inserted, fit the mesh as it is
-/// now.
-void rename_inserted(Cavity& cavity, Vertex then, const Mesh& now);
-
 }  // namespace kropla

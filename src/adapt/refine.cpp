@@ -84,10 +84,9 @@ std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge
     Cavity cavity;
     cavity.removed = shell.tets;
     cavity.inserted = {place.x};
-    const Vertex inserted = next_vertex(mesh);
     for (Tet t : shell.tets)
         for (Vertex end : {edge.a, edge.b})
-            cavity.added.push_back({with_replaced(mesh, t, end, inserted), mesh.region[t], mesh.patch[t]});
+            cavity.added.push_back({with_replaced(mesh, t, end, inserted_vertex(0)), mesh.region[t], mesh.patch[t]});
     cavity.worst_before = worst_aspect_ratio(mesh, shell.tets);
     cavity.worst_after = place.worst;
     return cavity;

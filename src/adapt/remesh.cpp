@@ -284,7 +284,7 @@ Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, con
         if (known && filled.position[v] == hole.points[as_size(v.value)]) {
             name[v] = hole.vertices[as_size(v.value)];
         } else {
-            name[v] = next_vertex(mesh, cavity.inserted.size());
+            name[v] = inserted_vertex(cavity.inserted.size());
             cavity.inserted.push_back(filled.position[v]);
         }
     }
