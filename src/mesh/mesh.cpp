@@ -1,10 +1,10 @@
 #include <kropla/mesh/mesh.h>
 
-#include <kropla/base/error.h>
 #include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 namespace kropla {
@@ -51,7 +51,7 @@ void check_vertices(const Mesh& mesh, std::span<const BoundaryFacet> boundary) {
     const auto vertices = static_cast<std::int32_t>(mesh.position.size());
     const auto check = [&](Vertex v, const char* what, auto number) {
         if (v.value < 0 || v.value >= vertices)
-            throw FileError(what + std::to_string(number) + " has vertex " + std::to_string(v.value) +
+            throw std::invalid_argument(what + std::to_string(number) + " has vertex " + std::to_string(v.value) +
                             ", but there are " + std::to_string(vertices) + " vertices");
     };
     for (Tet t : mesh.tets.indices())
@@ -71,7 +71,7 @@ void join(Mesh& mesh, std::span<const FacetRecord> same, std::span<const Boundar
             continue;
         }
         if (count == 2)
-            throw FileError("a facet of cell " + std::to_string(r.tet.value) + " already belongs to cells " +
+            throw std::invalid_argument("a facet of cell " + std::to_string(r.tet.value) + " already belongs to cells " +
                             std::to_string(cells[0]->tet.value) + " and " +
                             std::to_string(cells[1]->tet.value));
         cells[count++] = &r;

@@ -1,6 +1,5 @@
 #include <kropla/mesh/mesh.h>
 
-#include <kropla/base/error.h>
 #include <kropla/mesh/cavity.h>
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
@@ -11,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 namespace kropla {
@@ -24,7 +24,7 @@ std::string complaint(const Array<Vertex, Vec3>& position, const Array<Tet, std:
                       const std::vector<BoundaryFacet>& boundary = {}) {
     try {
         (void)make_mesh(position, tets, Array<Tet, Region>(tets.size(), surroundings), boundary);
-    } catch (const FileError& error) {
+    } catch (const std::invalid_argument& error) {
         return error.what();
     }
     return {};
