@@ -1,5 +1,6 @@
 #include "adapt/fits_domain.h"
 
+#include "adapt/constants.h"
 #include <kropla/base/error.h>
 #include <kropla/domain/words.h>
 #include <kropla/mesh/cells.h>
@@ -14,9 +15,6 @@
 
 namespace kropla {
 namespace {
-
-constexpr double most_off_its_face = 1e-9;     // [-] of the box's width
-constexpr double most_off_its_shape = 0.5;     // [surface sizes]; the generator's meshes are 0.15 at most off
 
 std::string region_words(Region region) { return "region " + std::to_string(region.value); }
 

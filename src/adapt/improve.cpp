@@ -6,28 +6,16 @@
 // step lowers the worst aspect ratio of what it replaces; that it ends soon, in any mesh, is due to a budget.
 
 #include "adapt/budget.h"
+#include "adapt/constants.h"
 #include "adapt/propose.h"
 #include "adapt/star.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 
 namespace kropla {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_gain = 1e-3;
-constexpr double passable_after_swap = 0.96;    // of good_enough: no swap for the energy makes a worse cell
-constexpr double longest_after_collapse = 2.0;  // [target sizes]
-constexpr double slightly_longer = 1.05;        // an edge may be than another that takes its place
-constexpr int most_swap_rounds = 6;             // of those that others have overtaken
-constexpr double far_from_good = 1.03;          // [good_enough]
-constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
-constexpr double treatments_of_one = 100;       // that a single bad cell may ask for
-constexpr double splits_of_one = 50;            // and
-constexpr double splits_per_bad_cell = 1;       // more vertices only make more bad cells
 
 enum class Kind { swap, move, collapse, split };
 
@@ -114,7 +102,7 @@ bool may_be_swapped(const Mesh& mesh, Tet t, std::size_t edge) {
     const Vertex across_k = vertex_across(mesh, t, k), across_l = vertex_across(mesh, t, l);
     if (!across_k.exists() || !across_l.exists() || across_k == across_l) return true;
     const double diagonal = std::min(length(v[as_size(k)], across_k), length(v[as_size(l)], across_l));
-    return diagonal < slightly_longer * slightly_longer * length(v[as_size(i)], v[as_size(j)]);
+    return diagonal < diagonal_tolerance * diagonal_tolerance * length(v[as_size(i)], v[as_size(j)]);
 }
 
 /// The swap at a cell that is for the energy: away with its longest edge, where it is obtuse, if three or four
@@ -204,9 +192,9 @@ std::optional<Operation> Operators::move(Tet t) const {
     }
     std::ranges::sort(by_cost, {}, [](const Candidate& c) { return std::pair(c.cost, c.vertex); });
     Candidate* chosen = nullptr;
-    Place best{{}, std::numeric_limits<double>::infinity()};
+    Place best{{}, infinity};
     for (Candidate& candidate : by_cost) {
-        const Place place = better_place(mesh, candidate.vertex, candidate.around, 0.9 * options.good_enough);
+        const Place place = better_place(mesh, candidate.vertex, candidate.around, smoothing_goal * options.good_enough);
         if (place.x == mesh.position[candidate.vertex] || place.worst >= best.worst) continue;
         chosen = &candidate;
         best = place;
@@ -220,7 +208,7 @@ std::optional<Operation> Operators::move(Tet t) const {
 
 bool Operators::makes_long_edge(const Cavity& cavity, Vertex to) const {
     const Vec3 place = mesh.position[to];
-    const double longest = longest_after_collapse * target_size(at_time, place);
+    const double longest = longest_by_quality * target_size(at_time, place);
     return std::ranges::any_of(cavity.added, [&](const NewTet& t) {
         return std::ranges::any_of(t.vertices, [&](Vertex v) { return distance(mesh.position[v], place) > longest; });
     });
@@ -284,7 +272,7 @@ std::vector<BadCell> take_apart(const Mesh& mesh, std::vector<BadCell>& bad) {
 
 /// What improvement may do.
 struct Allowed {
-    Budget treatments{treatments_of_one}, splits{splits_of_one};
+    Budget treatments{least_treatments}, splits{least_splits};
 
     void add_for(std::size_t bad, const AdaptOptions& options) {
         treatments.add(options.treatments * static_cast<double>(bad));
@@ -342,7 +330,7 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
 void retriangulate(Mesh& mesh, const BadCell& bad, const Snapshot& at_time, const AdaptOptions& options,
                    Budget& budget, Changes& changes) {
     std::vector<Tet> cluster = {bad.cell};
-    const int rings = bad.ratio > far_from_good * options.good_enough ? 2 : 1;
+    const int rings = bad.ratio > two_rings_above * options.good_enough ? 2 : 1;
     for (int ring = 1; ring <= rings; ++ring) {
         cluster = with_ring(mesh, cluster);
         const auto cavity = cluster_remesh(mesh, cluster, at_time, options, budget);

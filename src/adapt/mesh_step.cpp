@@ -1,5 +1,6 @@
 #include "adapt/mesh_step.h"
 
+#include "adapt/constants.h"
 #include "adapt/paper.h"
 #include "adapt/way.h"
 #include "base/checks.h"
@@ -16,17 +17,6 @@
 
 namespace kropla {
 namespace {
-
-constexpr int most_legs = 8;             // into which the motion of a step is cut
-constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
-constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
-constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
-constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
-constexpr std::size_t refusals_until_all_anew = 3;  // by the paper's method
-constexpr double cut_out_of_trouble = 50;           // by the same, AdaptOptions::cut_out
-constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
-constexpr int rings_of_trouble = 2;          // around such a cell, at most
-constexpr double harder = 0.92;          // there, cells must be better by this than elsewhere
 
 /// The vertices of a body's tets and of its layers' columns, in order.
 std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
@@ -133,7 +123,7 @@ const Changes& MeshStep::refine() {
 Changes MeshStep::refine_by_size() {
     const Snapshot at_time = snapshot(domain_, time_);
     AdaptOptions options = options_;
-    options.good_enough = std::max(3.5, harder * options_.good_enough);
+    options.good_enough = std::max(least_good_enough, stricter * options_.good_enough);
     auto cells = cells_near(current_, trouble_, trouble_in_sizes, at_time);
     Changes changes = adapt_to_size(current_, cells, at_time, options);
     cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());

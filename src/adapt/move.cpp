@@ -5,6 +5,7 @@
 // squeezed and torn; vertices on the faces of the box slide along; and a body reaches no farther than a few
 // of its own sizes.
 
+#include "adapt/constants.h"
 #include "adapt/for_all.h"
 #include "adapt/zone.h"
 #include "domain/layer_room.h"
@@ -18,12 +19,6 @@
 
 namespace kropla {
 namespace {
-
-constexpr double reach_in_body_sizes = 6.0;    // how far a displacement goes
-constexpr double most_reach = 10.0;             // in a narrow box, where that is no more work
-constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
-
-constexpr std::size_t too_much = 2;  // of a zone, in what is in reach: then the rest is left out
 
 /// The motion of one body over a step.
 struct Travel {
@@ -71,14 +66,13 @@ double volume_within(const Box& box, const Vec3& x, double reach) {
 /// How far a body's displacement goes. The farther, the less each cell is strained; so where walls cut away a part
 /// of what is in reach, it goes farther, to about as many cells.
 double reach_of(const Shape& shape, const Domain& domain) {
-    constexpr double step = 0.25;
     const double size = outer_radius(shape);
     const double whole = std::pow(2 * (1 + reach_in_body_sizes) * size, 3);
     const auto volume_in_reach = [&](double sizes) {
         return volume_within(domain.box, shape.centre, (1 + sizes) * size);
     };
     double sizes = reach_in_body_sizes;
-    while (sizes < most_reach && volume_in_reach(sizes + step) <= whole) sizes += step;
+    while (sizes < most_reach && volume_in_reach(sizes + reach_step) <= whole) sizes += reach_step;
     return std::max(sizes * size, least_reach_in_sizes * domain.size.surface);
 }
 
@@ -250,7 +244,7 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
         zone.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, v));
     });
     list_cells(zone, mesh);
-    if (zone.holds.size() <= too_much * (zone.cells.size() + zone.beyond.size())) return;
+    if (zone.holds.size() <= most_unused * (zone.cells.size() + zone.beyond.size())) return;
     shrink(zone, mesh);
     zone.vertices = zone.has.list();
 }

@@ -7,6 +7,7 @@
 // tessellation of [Chen, Holst 2011], "Efficient mesh optimization schemes based on Optimal Delaunay
 // Triangulations".
 
+#include "adapt/constants.h"
 #include "adapt/for_all.h"
 #include "adapt/zone.h"
 
@@ -19,10 +20,6 @@
 
 namespace kropla {
 namespace {
-
-constexpr int most_retreats = 5;        // vertices that are taken back may spoil the cells of others
-constexpr int most_passes = 4;          // over the vertices of bad cells
-constexpr double near_the_floor = 0.8;  // of it: cells above are put right by moving vertices
 
 /// Returns whether all cells had a volume; else nothing is moved.
 bool equalise_volumes(Zone& zone, const Mesh& mesh) {
@@ -98,7 +95,7 @@ int optimise_worst(Zone& zone, const Mesh& mesh, double above, const Watch* watc
             std::vector<StarFacet> star;
             star_of_ball(zone, mesh, apart[i], star);
             Vec3& place = zone.place[apart[i]];
-            const Place best = best_place(star, place, freedom(zone, apart[i]), 0.9 * above);
+            const Place best = best_place(star, place, freedom(zone, apart[i]), smoothing_goal * above);
             if (best.x == place) return;
             place = best.x;
             measure_ball(zone, mesh, apart[i]);

@@ -8,19 +8,15 @@
 
 #include "adapt/paper.h"
 
+#include "adapt/constants.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace kropla {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_gain = 1e-3;  // [-] of R/r, by a swap
-constexpr int rings_to_last = 2;     // around a bad cell: the small clusters, which are to be better than they must
 
 Vec3 laplacian_place(const Zone& zone, const Mesh& mesh, Vertex v, const LaplaceWeights& weights) {
     std::vector<Vertex> around;
@@ -155,7 +151,7 @@ Changes remesh_clusters(Mesh& mesh, std::span<const Tet> cells, double above, co
     std::erase_if(poor, [&](Tet t) { return !is_worse_than(mesh, t, above); });
     AdaptOptions well = options;  // so that it lasts, where a small cluster does that
     well.floor = std::min(above, std::max(options.paper->remeshed * options.floor, options.good_enough));
-    well.largest_ring = rings_to_last;
+    well.largest_ring = lasting_rings;
     well.whole_region = false;
     changes += repair(mesh, poor, at_time, well);
     AdaptOptions barely = options;

@@ -1,6 +1,7 @@
 // Splitting and collapsing edges towards the target size. The new vertex of a split goes to the best place
 // inside the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
 
+#include "adapt/constants.h"
 #include "adapt/for_all.h"
 #include "adapt/propose.h"
 #include "adapt/zone.h"
@@ -10,17 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 namespace kropla {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// How long, in terms of split_above, an edge may be that a collapse makes. Slightly above 1, so that crowded
-// vertices can go although others are too few: what is squeezed along one axis is torn along another.
-constexpr double longest_after_collapse = 1.05;
 
 /// The vertices of `t` with `to` in the place of `from`.
 std::array<Vertex, 4> with_replaced(const Mesh& mesh, Tet t, Vertex from, Vertex to) {
@@ -78,7 +72,7 @@ std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge
             star.push_back({mesh.position[a], mesh.position[b], mesh.position[c]});
         }
     const Vec3 middle = (mesh.position[edge.a] + mesh.position[edge.b]) / 2;
-    const Place place = best_place(star, middle, freedom(held), 0.8 * worst_allowed);
+    const Place place = best_place(star, middle, freedom(held), split_goal * worst_allowed);
     if (place.worst > worst_allowed || place.worst == infinity) return std::nullopt;
 
     Cavity cavity;
@@ -240,7 +234,7 @@ std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, const EdgeMe
     std::vector<Tet> around;
     for (const auto& [from, to] : {std::pair(e.a, e.b), std::pair(e.b, e.a)}) {
         ball_of(from, around);
-        if (makes_long_edge(mesh, around, from, to, measure, longest_after_collapse * o.split_above)) continue;
+        if (makes_long_edge(mesh, around, from, to, measure, longest_by_size * o.split_above)) continue;
         auto cavity = edge_collapse(mesh, from, to, around, best ? best->worst_after : infinity);
         if (!cavity || cavity->worst_after > std::max(o.passing, cavity->worst_before)) continue;
         best = std::move(cavity);

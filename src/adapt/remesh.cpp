@@ -4,6 +4,7 @@
 // across it: remeshing spreads only where it must. The repair ladder climbs from there ring by ring.
 
 #include "adapt/budget.h"
+#include "adapt/constants.h"
 #include "base/random.h"
 #include <kropla/generate/generate.h>
 #include "generate/sampling.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -22,15 +22,6 @@
 namespace kropla {
 namespace {
 
-constexpr double spacing_in_sizes = 0.8;     // of new points, as in the initial mesh
-constexpr double clearance_in_sizes = 0.5;   // of new points from the cluster's boundary facets
-constexpr int tries_per_point = 30;          // random candidates per point that would fit
-constexpr int most_growths = 30;             // of a cluster to take in facets that are not recovered
-constexpr double most_points_per_cell = 10;  // of a cluster; more would be to adapt sizes, which splits do
-constexpr double facets_like_a_cell = 64;    // distances to facets that cost as much as to triangulate a cell
-constexpr double like_a_treatment = 3;       // cells that cost as much to triangulate
-constexpr double treatments_within = 5;      // per bad cell of a filling
-constexpr double least_gain = 1e-3;
 constexpr Patch frozen{box_faces};           // the cluster's boundary, while it is a mesh of its own
 
 /// A set of tets with quick membership, in a fixed order.
@@ -96,7 +87,7 @@ double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const V
 
 /// Is a point nearer to `x` than the target spacing?
 bool is_taken(const PointGrid& taken, const Vec3& x, double size) {
-    return taken.any_within(x, spacing_in_sizes * size, 0, std::numeric_limits<double>::infinity());
+    return taken.any_within(x, spacing_in_sizes * size, 0, infinity);
 }
 
 /// Is a boundary facet too close to `x` for a new point?
@@ -132,7 +123,7 @@ bool fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& 
     PointGrid taken;
     for (const Vec3& p : hole.points) taken.insert(p, target_size(at_time, p));
     for (Tet t : cluster.cells) {
-        if (aspect_ratio(mesh, t) == std::numeric_limits<double>::infinity()) continue;
+        if (aspect_ratio(mesh, t) == infinity) continue;
         const int tries = 1 + static_cast<int>(std::ceil(tries_per_point * fitting_points(mesh, t, at_time)));
         for (int i = 0; i < tries; ++i) {
             heed(watch);
@@ -267,7 +258,7 @@ Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& 
     AdaptOptions within = options;
     within.clusters = false;
     within.treatments = treatments_within;
-    budget.take(like_a_treatment * improve(mesh, cells, at_time, within).treated);
+    budget.take(cells_like_a_treatment * improve(mesh, cells, at_time, within).treated);
     return mesh;
 }
 

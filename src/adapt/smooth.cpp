@@ -2,19 +2,13 @@
 // by an edge; guarded by the worst aspect ratio of the ball; and optimisation of the worst (star.cpp).
 
 #include <kropla/adapt/adapt.h>
+#include "adapt/constants.h"
 #include "adapt/star.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace kropla {
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 Vec3 laplacian_place(std::span<const Vec3> neighbours, const LaplaceWeights& weights) {
     std::vector<double> reach;  // per neighbour: the sum of its distances to the others
     double sum = 0;

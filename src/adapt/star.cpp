@@ -6,27 +6,21 @@
 
 #include "adapt/star.h"
 
+#include "adapt/constants.h"
 #include "base/tetrahedron.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace kropla {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double active_share = 0.93;    // tets this near to the worst take part in choosing the direction
-constexpr double least_gain = 1e-2;      // relative; smaller steps do not pay
-constexpr int most_steps = 8;
-constexpr int most_halvings = 4;
-
 Vec3 shortest_in_hull(std::span<const Vec3> gradients) {
     Vec3 p = gradients.front();
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < hull_iterations; ++i) {
         const auto least = std::ranges::min_element(gradients, {}, [&](const Vec3& g) { return dot(p, g); });
         const Vec3 towards = *least - p;
         const double length = squared_norm(towards);
-        if (length == 0 || -dot(p, towards) < 1e-3 * squared_norm(p)) break;
+        if (length == 0 || -dot(p, towards) < hull_tolerance * squared_norm(p)) break;
         p += std::clamp(-dot(p, towards) / length, 0.0, 1.0) * towards;
     }
     return p;
@@ -115,18 +109,18 @@ double worst_in_star(std::span<const StarFacet> star, const Vec3& x, double boun
 Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freedom& f, double good_enough) {
     auto fours = by_fours(star);
     Place best{start, find_ratios(fours, start, infinity)};
-    double reach = 0.25 * shortest_distance(star, start);
+    double reach = first_step * shortest_distance(star, start);
     for (int step = 0; step < most_steps && best.worst > good_enough; ++step) {
         const Vec3 slope = descent(fours, best.x, best.worst, f);
         const double steepness = norm(slope);
         if (!(steepness > 0) || !std::isfinite(steepness)) break;
         // As far as the linear model takes the worst ratio to the goal, but within reach.
-        double length = std::min(reach, 1.2 * (best.worst - 0.8 * good_enough) / steepness);
+        double length = std::min(reach, overshoot * (best.worst - descent_goal * good_enough) / steepness);
         bool improved = false;
         for (int halving = 0; halving < most_halvings && !improved; ++halving, length /= 2) {
             const Vec3 x = best.x + length / steepness * slope;
-            const double worst = find_ratios(fours, x, (1 - least_gain) * best.worst);
-            if (worst < (1 - least_gain) * best.worst) {
+            const double worst = find_ratios(fours, x, (1 - least_smoothing_gain) * best.worst);
+            if (worst < (1 - least_smoothing_gain) * best.worst) {
                 best = {x, worst};
                 improved = true;
                 reach = 2 * length;

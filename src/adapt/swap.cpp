@@ -5,19 +5,16 @@
 // open: an edge on a face of the box, whose two ends of the ring then close it within the face.
 
 #include <kropla/adapt/adapt.h>
+#include "adapt/constants.h"
 #include "base/tetrahedron.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 namespace kropla {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_gain = 1e-3;         // relative fall of the worst ratio that pays
-constexpr double least_energy_gain = 0.05;  // and of the energy
 constexpr std::size_t most = longest_ring;
 
 using Corners = std::array<const Vec3*, 4>;
