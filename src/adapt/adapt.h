@@ -169,28 +169,4 @@ inline constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhe
 [[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells,
                                    const Array<Vertex, Vec3>& displacement, double least = least_volume_kept);
 
-struct Zone;  // zone.h
-
-/// How the surroundings follow the bodies: by their displacement, spread; or not at all, as in the paper, where they are
-/// to be smoothed then.
-enum class Follow { spread, rest };
-
-struct MoveReport {
-    bool arrived = false;  // else the mesh is as it was
-    double fraction = 0;   // of the way that is safe for all cells
-    Tet limiting;          // the cell that stopped it, if it did not arrive
-};
-
-/// Finds where bodies that move rigidly from their places at `t0` to those at `t1` [s] take the vertices of their
-/// surroundings; nothing is moved yet. `bodies` are, per body, the vertices of its cells. `zone` is empty or follows
-/// the mesh; it comes to hold the surroundings that the displacement reaches, and may hold more. Vertices that moved
-/// since `begin_motion` still count as moving.
-void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone, Follow surroundings = Follow::spread);
-
-/// The same, and moves them there if every cell stays valid on the way; else tells how far it could go. Connectivity
-/// is unchanged.
-MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone, Follow surroundings = Follow::spread);
-
 }  // namespace kropla

@@ -151,21 +151,21 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
 /// Puts the bodies' vertices where they go: rigidly with the body, but for the columns of layers, which stand on
 /// their wall at the end as high as the gaps there let them.
 void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
-                  std::span<const std::vector<Vertex>> bodies, Zone& zone) {
-    zone.bodies.clear();
+                  std::span<const std::vector<Vertex>> bodies, ZoneMotion& motion) {
+    motion.bodies.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i)
         for (Vertex v : bodies[i]) {
-            zone.bodies.push_back(v);
-            zone.moves[v] = Zone::with_body;
-            zone.place[v] = travels[i].taken_along(mesh.position[v]);
+            motion.bodies.push_back(v);
+            motion.moves[v] = ZoneMotion::with_body;
+            motion.place[v] = travels[i].taken_along(mesh.position[v]);
         }
     for (const PrismLayer& layer : mesh.layers) {
         std::vector<Vec3> wall;
         for (int column = 0; column < count_columns(layer); ++column)
-            wall.push_back(zone.place[column_vertex(layer, column, 0)]);
+            wall.push_back(motion.place[column_vertex(layer, column, 0)]);
         const auto places = column_places(layer, wall, at_end);
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (i % as_size(layer.count + 1) != 0) zone.place[layer.columns[i]] = places[i];
+            if (i % as_size(layer.count + 1) != 0) motion.place[layer.columns[i]] = places[i];
     }
 }
 
@@ -227,40 +227,48 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<cons
 
 /// Gathers what is in reach of the bodies, and where the vertices are to go.
 void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
-                    std::span<const std::vector<Vertex>> bodies, Follow surroundings, Zone& zone) {
+                    std::span<const std::vector<Vertex>> bodies, Follow surroundings, Zone& zone, ZoneMotion& motion) {
     reach_out(mesh, travels, bodies, zone);
-    place_bodies(mesh, at_end, travels, bodies, zone);
-    zone.vertices = zone.has.list();
-    for_all(zone.vertices.size(), [&](std::size_t i) {
-        const Vertex v = zone.vertices[i];
-        if (zone.moves[v] == Zone::with_body) return;
-        zone.place[v] = mesh.position[v];
+    fit(motion, mesh);
+    place_bodies(mesh, at_end, travels, bodies, motion);
+    motion.vertices = zone.has.list();
+    for_all(motion.vertices.size(), [&](std::size_t i) {
+        const Vertex v = motion.vertices[i];
+        if (motion.moves[v] == ZoneMotion::with_body) return;
+        motion.place[v] = mesh.position[v];
         if (out_of_reach(travels, mesh.position[v])) {
-            if (zone.moves[v] == 0 && !keeps_its_size(travels, mesh.position[v])) zone.moves[v] = Zone::by_size;
+            if (motion.moves[v] == 0 && !keeps_its_size(travels, mesh.position[v]))
+                motion.moves[v] = ZoneMotion::by_size;
             return;
         }
-        zone.moves[v] = Zone::by_itself;
+        motion.moves[v] = ZoneMotion::by_itself;
         if (surroundings == Follow::rest) return;
-        zone.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, v));
+        motion.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, motion, v));
     });
-    list_cells(zone, mesh);
-    if (zone.holds.size() <= most_unused * (zone.cells.size() + zone.beyond.size())) return;
-    shrink(zone, mesh);
-    zone.vertices = zone.has.list();
+    list_cells(zone, motion, mesh);
+    if (zone.holds.size() > most_unused * (motion.cells.size() + motion.beyond.size())) {
+        IndexSet<Tet> stay;
+        for (Tet t : motion.cells) stay.insert(t);
+        for (Tet t : motion.beyond) stay.insert(t);
+        shrink(zone, mesh, stay);
+        motion.vertices = zone.has.list();
+    }
+    find_sizes(motion, at_end);
 }
 
 }  // namespace
 
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone, Follow follow) {
-    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, follow, zone);
+                    double t1, Zone& zone, ZoneMotion& motion, Follow follow) {
+    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, follow, zone,
+                   motion);
 }
 
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone, Follow follow) {
-    place_boundary(mesh, domain, bodies, t0, t1, zone, follow);
-    const MoveReport report = check_way(zone, mesh, mesh.position, least_volume_kept);
-    if (report.arrived) write_places(zone, mesh);
+                         double t1, Zone& zone, ZoneMotion& motion, Follow follow) {
+    place_boundary(mesh, domain, bodies, t0, t1, zone, motion, follow);
+    const MoveReport report = check_way(motion, mesh, mesh.position, least_volume_kept);
+    if (report.arrived) write_places(motion, mesh);
     return report;
 }
 

@@ -18,33 +18,35 @@
 namespace kropla {
 namespace {
 
-Vec3 laplacian_place(const Zone& zone, const Mesh& mesh, Vertex v, const LaplaceWeights& weights) {
+Vec3 laplacian_place(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh, Vertex v,
+                     const LaplaceWeights& weights) {
     std::vector<Vertex> around;
     for (Tet t : zone.ball[v])
         std::ranges::copy_if(mesh.tets[t], std::back_inserter(around), [v](Vertex w) { return w != v; });
     std::ranges::sort(around);
     around.erase(std::unique(around.begin(), around.end()), around.end());
     std::vector<Vec3> places;
-    for (Vertex w : around) places.push_back(zone.place[w]);
-    return zone.place[v] + restricted(laplacian_place(places, weights) - zone.place[v], freedom(zone, v));
+    for (Vertex w : around) places.push_back(motion.place[w]);
+    return motion.place[v] + restricted(laplacian_place(places, weights) - motion.place[v], freedom(zone, motion, v));
 }
 
 /// One sweep, each vertex seeing the new places of those before it; cells may turn over. Ratios are then to be measured.
-void equalise_volumes(Zone& zone, const Mesh& mesh, std::span<const Vertex> vertices) {
-    for (Vertex v : vertices) zone.place[v] = laplacian_place(zone, mesh, v, {.x1 = 0, .x2 = 1});
+void equalise_volumes(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, std::span<const Vertex> vertices) {
+    for (Vertex v : vertices) motion.place[v] = laplacian_place(zone, motion, mesh, v, {.x1 = 0, .x2 = 1});
 }
 
 /// One sweep of moves that do not make the worst cell of the ball worse. Returns how many.
-int smooth_for_quality(Zone& zone, const Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights) {
+int smooth_for_quality(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, std::span<const Vertex> vertices,
+                       const LaplaceWeights& weights) {
     int moved = 0;
     std::vector<StarFacet> star;
     for (Vertex v : vertices) {
-        const Vec3 place = laplacian_place(zone, mesh, v, weights);
-        star_of_ball(zone, mesh, v, star);
-        const double worst = worst_in_star(star, zone.place[v], infinity);
-        if (place == zone.place[v] || worst_in_star(star, place, worst) > worst) continue;
-        zone.place[v] = place;
-        for (Tet t : zone.ball[v]) zone.ratio[t] = aspect_ratio(zone, mesh, t);
+        const Vec3 place = laplacian_place(zone, motion, mesh, v, weights);
+        star_of_ball(zone, motion, mesh, v, star);
+        const double worst = worst_in_star(star, motion.place[v], infinity);
+        if (place == motion.place[v] || worst_in_star(star, place, worst) > worst) continue;
+        motion.place[v] = place;
+        for (Tet t : zone.ball[v]) motion.ratio[t] = aspect_ratio(motion, mesh, t);
         ++moved;
     }
     return moved;
@@ -56,20 +58,20 @@ struct Places {
     double worst;
 };
 
-Places places(const Zone& zone, double worst) {
+Places places(const ZoneMotion& motion, double worst) {
     Places now{{}, worst};
-    for (Vertex v : zone.vertices) now.of_vertices.push_back(zone.place[v]);
+    for (Vertex v : motion.vertices) now.of_vertices.push_back(motion.place[v]);
     return now;
 }
 
-void put_back(Zone& zone, const Mesh& mesh, const Places& then) {
-    for (std::size_t i = 0; i < zone.vertices.size(); ++i) zone.place[zone.vertices[i]] = then.of_vertices[i];
-    measure(zone, mesh);
+void put_back(ZoneMotion& motion, const Mesh& mesh, const Places& then) {
+    for (std::size_t i = 0; i < motion.vertices.size(); ++i) motion.place[motion.vertices[i]] = then.of_vertices[i];
+    measure(motion, mesh);
 }
 
-double worst_ratio(const Zone& zone) {
+double worst_ratio(const ZoneMotion& motion) {
     double worst = 0;
-    for (Tet t : zone.cells) worst = std::max(worst, zone.ratio[t]);
+    for (Tet t : motion.cells) worst = std::max(worst, motion.ratio[t]);
     return worst;
 }
 
@@ -115,30 +117,31 @@ double about_the_limit(const AdaptOptions& options) {
     return std::min(options.floor, std::max(options.paper->about * options.floor, options.good_enough));
 }
 
-std::optional<Changes> smooth_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
+std::optional<Changes> smooth_places(const Zone& zone, ZoneMotion& motion, const Mesh& mesh,
+                                     const AdaptOptions& options) {
     const PaperMethod& paper = *options.paper;
     const double good = std::max(paper.much_less * options.floor, options.swap_above);
     const double about_limit = about_the_limit(options);
     Changes changes;
-    measure(zone, mesh);
-    double worst = worst_ratio(zone);
-    Places best = places(zone, worst);
+    measure(motion, mesh);
+    double worst = worst_ratio(motion);
+    Places best = places(motion, worst);
     while (worst > good && changes.smoothing_sweeps < paper.sweeps) {
         heed(options.watch);
-        const auto vertices = vertices_of_worse(zone, mesh, good);
+        const auto vertices = vertices_of_worse(zone, motion, mesh, good);
         if (worst > about_limit) {
-            equalise_volumes(zone, mesh, vertices);
-            measure(zone, mesh);
+            equalise_volumes(zone, motion, mesh, vertices);
+            measure(motion, mesh);
             ++changes.smoothing_sweeps;
         }
-        const int moved = smooth_for_quality(zone, mesh, vertices, paper.weights);
+        const int moved = smooth_for_quality(zone, motion, mesh, vertices, paper.weights);
         ++changes.smoothing_sweeps;
         changes.moved += moved;
-        worst = worst_ratio(zone);
-        if (worst <= best.worst) best = places(zone, worst);
+        worst = worst_ratio(motion);
+        if (worst <= best.worst) best = places(motion, worst);
         if (moved == 0) break;
     }
-    if (worst > best.worst) put_back(zone, mesh, best);
+    if (worst > best.worst) put_back(motion, mesh, best);
     if (!std::isfinite(best.worst)) return std::nullopt;
     return changes;
 }

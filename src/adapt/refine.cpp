@@ -98,8 +98,8 @@ struct WrongEdge {
 /// body.
 class EdgeMeasure {
 public:
-    EdgeMeasure(const Mesh& mesh, const Zone& zone, const Snapshot& at_time)
-        : mesh_(mesh), zone_(zone), at_time_(at_time) {}
+    EdgeMeasure(const Mesh& mesh, const Zone& zone, const ZoneMotion& motion, const Snapshot& at_time)
+        : mesh_(mesh), zone_(zone), motion_(motion), at_time_(at_time) {}
 
     [[nodiscard]] double ratio(Edge e) const {
         return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size(e.a) + size(e.b)) / 2);
@@ -111,11 +111,12 @@ public:
 
 private:
     [[nodiscard]] double size(Vertex v) const {
-        if (zone_.has.contains(v) && zone_.place[v] == mesh_.position[v]) return zone_.size[v];
+        if (zone_.has.contains(v) && motion_.place[v] == mesh_.position[v]) return motion_.size[v];
         return target_size(at_time_, mesh_.position[v]);
     }
     const Mesh& mesh_;
     const Zone& zone_;
+    const ZoneMotion& motion_;
     const Snapshot& at_time_;
 };
 
@@ -145,48 +146,49 @@ void tell_wrong(const FourPlaces& places, const std::array<Four, 4>& sizes, Boun
     for (std::size_t i = 0; i < 4; ++i) wrong[i] = beyond[i] > 0;
 }
 
-void find_wrong_edges(const Mesh& mesh, const Zone& zone, Tet t, Bounds bounds, std::vector<WrongEdge>& wrong) {
+void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, Tet t, Bounds bounds, std::vector<WrongEdge>& wrong) {
     for (std::size_t k = 0; k < tet_edges.size(); ++k) {
         const auto [a, b] = tet_edge(mesh, t, k);
-        const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
+        const double size = (motion.size[a] + motion.size[b]) / 2;
+        const double square = squared_norm(motion.place[a] - motion.place[b]);
         if (!bounds.broken(square, size)) continue;
         wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});
     }
 }
 
-void find_wrong_edges_of_four(const Mesh& mesh, const Zone& zone, std::span<const Tet> cells, std::size_t first,
+void find_wrong_edges_of_four(const Mesh& mesh, const ZoneMotion& motion, std::span<const Tet> cells, std::size_t first,
                               Bounds bounds, std::vector<WrongEdge>& wrong) {
     std::array<Four, 4> sizes;
     for (std::size_t i = 0; i < 4; ++i) {
         const auto& v = mesh.tets[cells[std::min(first + i, cells.size() - 1)]];
-        for (std::size_t k = 0; k < 4; ++k) sizes[k].set(i, zone.size[v[k]]);
+        for (std::size_t k = 0; k < 4; ++k) sizes[k].set(i, motion.size[v[k]]);
     }
     std::array<bool, 4> is_wrong;
-    tell_wrong(four_cells(cells, mesh, first, zone.place), sizes, bounds, is_wrong);
+    tell_wrong(four_cells(cells, mesh, first, motion.place), sizes, bounds, is_wrong);
     for (std::size_t i = 0; i < 4 && first + i < cells.size(); ++i)
-        if (is_wrong[i]) find_wrong_edges(mesh, zone, cells[first + i], bounds, wrong);
+        if (is_wrong[i]) find_wrong_edges(mesh, motion, cells[first + i], bounds, wrong);
 }
 
 /// Those of all cells, each as often as it has cells.
-void find_wrong_edges(const Mesh& mesh, const Zone& zone, std::span<const Tet> cells, Bounds bounds,
+void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, std::span<const Tet> cells, Bounds bounds,
                       std::vector<WrongEdge>& wrong) {
     constexpr std::size_t at_once = 4096;
     std::vector<std::vector<WrongEdge>> parts((cells.size() + at_once - 1) / at_once);
     for_all(parts.size(), [&](std::size_t part) {
         const std::size_t end = std::min(cells.size(), at_once * (part + 1));
         for (std::size_t i = at_once * part; i < end; i += 4)
-            find_wrong_edges_of_four(mesh, zone, cells, i, bounds, parts[part]);
+            find_wrong_edges_of_four(mesh, motion, cells, i, bounds, parts[part]);
     }, 1);
     for (const auto& part : parts) wrong.insert(wrong.end(), part.begin(), part.end());
 }
 
-/// The edges of the zone's cells, and of those beyond, that are too long or too short. Crowds are thinned before gaps are filled;
-/// the shortest and the longest edges come first.
-std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const Zone& zone, const AdaptOptions& o) {
+/// The edges of the motion's cells, and of those beyond, that are too long or too short. Crowds are thinned before gaps
+/// are filled; the shortest and the longest edges come first.
+std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const ZoneMotion& motion, const AdaptOptions& o) {
     const Bounds bounds{o.collapse_below * o.collapse_below, o.split_above * o.split_above};
     std::vector<WrongEdge> wrong;
-    find_wrong_edges(mesh, zone, zone.cells, bounds, wrong);
-    find_wrong_edges(mesh, zone, zone.beyond, bounds, wrong);
+    find_wrong_edges(mesh, motion, motion.cells, bounds, wrong);
+    find_wrong_edges(mesh, motion, motion.beyond, bounds, wrong);
     const auto rank = [](double ratio) { return ratio > 1 ? 1 + 1 / ratio : ratio; };
     std::ranges::sort(wrong, {}, [&](const WrongEdge& w) {
         return std::tuple(rank(w.ratio), w.edge.a, w.edge.b, w.cell);
@@ -210,8 +212,8 @@ std::optional<Tet> cell_at(const Mesh& mesh, const WrongEdge& wrong) {
 
 /// The ball of a vertex while the mesh still has the cells of the zone, of which the balls of vertices that move are
 /// known.
-void ball_at_start(const Mesh& mesh, const Zone& zone, Vertex v, std::vector<Tet>& tets) {
-    if (zone.has.contains(v) && !freedom(zone, v).none()) tets = zone.ball[v];
+void ball_at_start(const Mesh& mesh, const Zone& zone, const ZoneMotion& motion, Vertex v, std::vector<Tet>& tets) {
+    if (zone.has.contains(v) && !freedom(zone, motion, v).none()) tets = zone.ball[v];
     else ball(mesh, v, tets);
 }
 
@@ -249,11 +251,11 @@ std::optional<Cavity> split(const Mesh& mesh, Edge e, Tet t, const AdaptOptions&
 
 }  // namespace
 
-Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options,
-                      bool tangled) {
+Changes adapt_to_size(Mesh& mesh, const Zone& zone, const ZoneMotion& motion, const Snapshot& at_time,
+                      const AdaptOptions& options, bool tangled) {
     Changes changes;
-    const EdgeMeasure measure(mesh, zone, at_time);
-    const auto wrong = wrong_edges(mesh, zone, options);
+    const EdgeMeasure measure(mesh, zone, motion, at_time);
+    const auto wrong = wrong_edges(mesh, motion, options);
     const auto first_long = std::ranges::find_if(wrong, [](const WrongEdge& w) { return w.ratio > 1; });
     const auto shorts = static_cast<std::size_t>(first_long - wrong.begin());
     const auto can_be_done = [&](const std::optional<Cavity>& cavity) {
@@ -262,7 +264,7 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
     const auto collapse = [&](std::size_t i, auto ball_of) {
         return collapse_either_way(mesh, wrong[i].edge, measure, options, ball_of);
     };
-    const auto in_zone = [&](Vertex v, std::vector<Tet>& tets) { ball_at_start(mesh, zone, v, tets); };
+    const auto in_zone = [&](Vertex v, std::vector<Tet>& tets) { ball_at_start(mesh, zone, motion, v, tets); };
     const auto in_mesh = [&](Vertex v, std::vector<Tet>& tets) { ball(mesh, v, tets); };
     Replaced replaced;
     for (auto& [i, proposed] : propose_all(shorts, [&](std::size_t i) { return collapse(i, in_zone); },
@@ -288,10 +290,8 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
 }
 
 Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
-    Zone zone;
-    gather(zone, mesh, cells);
-    find_sizes(zone, at_time);
-    return adapt_to_size(mesh, zone, at_time, options, is_tangled(mesh, cells));
+    const auto [zone, motion] = movable(mesh, cells, &at_time);
+    return adapt_to_size(mesh, zone, motion, at_time, options, is_tangled(mesh, cells));
 }
 
 }  // namespace kropla

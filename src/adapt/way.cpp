@@ -111,18 +111,19 @@ double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<V
     return fraction;
 }
 
-MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least) {
-    std::vector<double> safe(zone.cells.size(), 1);
+MoveReport check_way(const ZoneMotion& motion, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least) {
+    std::vector<double> safe(motion.cells.size(), 1);
     for_all((safe.size() + 3) / 4, [&](std::size_t four) {
         const std::size_t first = 4 * four;
         std::array<bool, 4> is_safe;
-        tell_safe(four_cells(zone.cells, mesh, first, start), four_cells(zone.cells, mesh, first, zone.place), least, is_safe);
+        tell_safe(four_cells(motion.cells, mesh, first, start), four_cells(motion.cells, mesh, first, motion.place), least,
+                  is_safe);
         for (std::size_t i = 0; i < 4 && first + i < safe.size(); ++i)
-            if (!is_safe[i]) safe[first + i] = safe_fraction(mesh, zone.cells[first + i], start, zone.place, least);
+            if (!is_safe[i]) safe[first + i] = safe_fraction(mesh, motion.cells[first + i], start, motion.place, least);
     });
     MoveReport report{true, 1, {}};
     for (std::size_t c = 0; c < safe.size(); ++c)
-        if (safe[c] < report.fraction) report = {false, safe[c], zone.cells[c]};
+        if (safe[c] < report.fraction) report = {false, safe[c], motion.cells[c]};
     return report;
 }
 

@@ -122,7 +122,8 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
         const Mesh before = mesh;
         const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
         Zone zone;
-        const MoveReport report = move_boundary(mesh, domain, bodies, 0, 0.04, zone);
+        ZoneMotion motion;
+        const MoveReport report = move_boundary(mesh, domain, bodies, 0, 0.04, zone, motion);
         ASSERT_TRUE(report.arrived);
         EXPECT_EQ(report.fraction, 1);
         EXPECT_EQ(verify(mesh), "");
@@ -146,7 +147,7 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
             ++free_moved;
         }
         EXPECT_GE(free_moved, 190);
-        for (Tet t : zone.cells) EXPECT_EQ(mesh.region[t], surroundings);
+        for (Tet t : motion.cells) EXPECT_EQ(mesh.region[t], surroundings);
         const auto old_shape = properties(before), new_shape = properties(mesh);
         EXPECT_TRUE(same(new_shape, old_shape));  // all volumes to 1e-12 of the box's
         EXPECT_NEAR(new_shape.volume.at(Region(1)), old_shape.volume.at(Region(1)),
@@ -160,7 +161,8 @@ TEST(MoveBoundary, TellsHowFarItCouldGoAndLeavesTheMesh) {
     const Mesh before = mesh;
     const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
     Zone zone;
-    const MoveReport report = move_boundary(mesh, domain, bodies, 0, 1.5, zone);
+    ZoneMotion motion;
+    const MoveReport report = move_boundary(mesh, domain, bodies, 0, 1.5, zone, motion);
     EXPECT_FALSE(report.arrived);
     EXPECT_EQ(mesh, before);
     EXPECT_GT(report.fraction, 0);
@@ -169,7 +171,7 @@ TEST(MoveBoundary, TellsHowFarItCouldGoAndLeavesTheMesh) {
     EXPECT_EQ(mesh.region[report.limiting], surroundings);
 
     // As far as it said it does go.
-    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 0.99 * report.fraction * 1.5, zone).arrived);
+    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 0.99 * report.fraction * 1.5, zone, motion).arrived);
     EXPECT_EQ(verify(mesh), "");
 }
 
@@ -179,7 +181,8 @@ TEST(MoveBoundary, AtRestNothingMoves) {
     const Mesh before = mesh;
     const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
     Zone zone;
-    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 1, zone).arrived);
+    ZoneMotion motion;
+    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 1, zone, motion).arrived);
     for (Vertex v : all_vertices(mesh)) EXPECT_EQ(mesh.position[v], before.position[v]);
 }
 
@@ -201,9 +204,10 @@ TEST(MoveBoundary, ABodyThatComesBackIsTheSameBitForBit) {
         EXPECT_NEAR(start, 1, 1e-12);
         const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
         Zone zone;
+        ZoneMotion motion;
         std::vector<Vec3> seen;
         for (int i = 0; i < 40 * lap; ++i) {
-            ASSERT_TRUE(move_boundary(mesh, domain, bodies, i, i + 1, zone).arrived) << "step " << i;
+            ASSERT_TRUE(move_boundary(mesh, domain, bodies, i, i + 1, zone, motion).arrived) << "step " << i;
             ASSERT_NEAR(region_volume(mesh, Region(1)) / volume(domain.bodies[0].shape), 1, 1e-12) << i;
             if (i % lap != 0) continue;
             std::vector<Vec3> here;
