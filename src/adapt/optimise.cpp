@@ -112,8 +112,7 @@ void measure(ZoneMotion& motion, const Mesh& mesh) {
     const std::size_t count = motion.cells.size();
     for_all((count + 3) / 4, [&](std::size_t four) {
         const std::size_t first = 4 * four;
-        Four ratios;
-        tet_aspect_ratios(four_cells(motion.cells, mesh, first, motion.place), ratios);
+        const auto ratios = tet_aspect_ratios(four_cells(motion.cells, mesh, first, motion.place));
         for (std::size_t i = 0; i < 4 && first + i < count; ++i) motion.ratio[motion.cells[first + i]] = ratios[i];
     });
 }

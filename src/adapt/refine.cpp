@@ -120,57 +120,35 @@ private:
     const Snapshot& at_time_;
 };
 
-/// The bounds of an edge's length, squared, in target sizes.
-struct Bounds {
-    double shortest, longest;
-
-    /// What is not a number breaks none.
-    [[nodiscard]] bool broken(double square, double size) const {
-        return square > longest * (size * size) || square < shortest * (size * size);
-    }
-};
-
-/// Which of four cells have an edge out of bounds, by the same arithmetic.
-KROPLA_FOR_EACH_PROCESSOR
-void tell_wrong(const FourPlaces& places, const std::array<Four, 4>& sizes, Bounds bounds, std::array<bool, 4>& wrong) {
-    const auto [a, b, c, d] = gathered(places);
-    const std::array<FourVec3, 4> x = {a, b, c, d};
-    Four beyond = -1;
-    for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = i + 1; j < 4; ++j) {
-            const Four size = (sizes[i] + sizes[j]) / 2, square = squared_norm(x[i] - x[j]);
-            const Four too_long = square - bounds.longest * (size * size);
-            const Four too_short = bounds.shortest * (size * size) - square;
-            beyond = greater(beyond, greater(too_long, too_short));
-        }
-    for (std::size_t i = 0; i < 4; ++i) wrong[i] = beyond[i] > 0;
+/// What is not a number breaks no bound.
+bool is_out_of(SquaredBounds bounds, double square, double size) {
+    return square > bounds.most * (size * size) || square < bounds.least * (size * size);
 }
 
-void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, Tet t, Bounds bounds, std::vector<WrongEdge>& wrong) {
+void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, Tet t, SquaredBounds bounds, std::vector<WrongEdge>& wrong) {
     for (std::size_t k = 0; k < tet_edges.size(); ++k) {
         const auto [a, b] = tet_edge(mesh, t, k);
         const double size = (motion.size[a] + motion.size[b]) / 2;
         const double square = squared_norm(motion.place[a] - motion.place[b]);
-        if (!bounds.broken(square, size)) continue;
+        if (!is_out_of(bounds, square, size)) continue;
         wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});
     }
 }
 
 void find_wrong_edges_of_four(const Mesh& mesh, const ZoneMotion& motion, std::span<const Tet> cells, std::size_t first,
-                              Bounds bounds, std::vector<WrongEdge>& wrong) {
-    std::array<Four, 4> sizes;
+                              SquaredBounds bounds, std::vector<WrongEdge>& wrong) {
+    std::array<FourNumbers, 4> sizes;  // per corner, per tet
     for (std::size_t i = 0; i < 4; ++i) {
         const auto& v = mesh.tets[cells[std::min(first + i, cells.size() - 1)]];
-        for (std::size_t k = 0; k < 4; ++k) sizes[k].set(i, motion.size[v[k]]);
+        for (std::size_t k = 0; k < 4; ++k) sizes[k][i] = motion.size[v[k]];
     }
-    std::array<bool, 4> is_wrong;
-    tell_wrong(four_cells(cells, mesh, first, motion.place), sizes, bounds, is_wrong);
+    const auto is_wrong = have_edge_out_of(bounds, four_cells(cells, mesh, first, motion.place), sizes);
     for (std::size_t i = 0; i < 4 && first + i < cells.size(); ++i)
         if (is_wrong[i]) find_wrong_edges(mesh, motion, cells[first + i], bounds, wrong);
 }
 
 /// Those of all cells, each as often as it has cells.
-void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, std::span<const Tet> cells, Bounds bounds,
+void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, std::span<const Tet> cells, SquaredBounds bounds,
                       std::vector<WrongEdge>& wrong) {
     constexpr std::size_t at_once = 4096;
     std::vector<std::vector<WrongEdge>> parts((cells.size() + at_once - 1) / at_once);
@@ -185,7 +163,7 @@ void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, std::span<cons
 /// The edges of the motion's cells, and of those beyond, that are too long or too short. Crowds are thinned before gaps
 /// are filled; the shortest and the longest edges come first.
 std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const ZoneMotion& motion, const AdaptOptions& o) {
-    const Bounds bounds{o.collapse_below * o.collapse_below, o.split_above * o.split_above};
+    const SquaredBounds bounds{o.collapse_below * o.collapse_below, o.split_above * o.split_above};
     std::vector<WrongEdge> wrong;
     find_wrong_edges(mesh, motion, motion.cells, bounds, wrong);
     find_wrong_edges(mesh, motion, motion.beyond, bounds, wrong);

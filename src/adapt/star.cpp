@@ -26,47 +26,27 @@ Vec3 shortest_in_hull(std::span<const Vec3> gradients) {
     return p;
 }
 
-/// A star by four facets at a time; those that fill up stand twice.
-struct FourFacets {
-    FourVec3 a, b, c;
-    Four ratios;  // of the tets that they made with the last point asked for
-};
-
-std::vector<FourFacets> by_fours(std::span<const StarFacet> star) {
-    std::vector<FourFacets> fours((star.size() + 3) / 4);
-    for (std::size_t i = 0; i < 4 * fours.size(); ++i) {
-        const StarFacet& facet = star[std::min(i, star.size() - 1)];
-        FourFacets& four = fours[i / 4];
-        set(four.a, i % 4, facet.a);
-        set(four.b, i % 4, facet.b);
-        set(four.c, i % 4, facet.c);
-    }
-    return fours;
-}
-
 /// As worst_in_star; if `bound` is not exceeded, the ratios are there afterwards.
-double find_ratios(std::span<FourFacets> star, const Vec3& x, double bound) {
+double find_all_ratios(std::span<FourFacets> star, const Vec3& x, double bound) {
     double worst = 0;
     for (FourFacets& four : star) {
-        tet_aspect_ratios({four_times(x), four.a, four.b, four.c}, four.ratios);
-        const Four& r = four.ratios;
+        find_ratios(four, x);
+        const FourNumbers& r = four.ratios;
         worst = std::max({worst, r[0], r[1], r[2], r[3]});
         if (worst > bound) return worst;
     }
     return worst;
 }
 
-/// The direction of steepest descent of the worst ratio; its length is the slope along it. The ratios at `x`
-/// are known.
-Vec3 descent(std::span<const FourFacets> star, const Vec3& x, double worst, const Freedom& f) {
+/// The direction of steepest descent of the worst ratio; its length is the slope along it. `fours` has the ratios at `x`.
+Vec3 descent(std::span<const StarFacet> star, std::span<const FourFacets> fours, const Vec3& x, double worst, const Freedom& f) {
     std::array<Vec3, 16> gradients;
     std::size_t count = 0;
-    for (const FourFacets& four : star)
-        for (std::size_t i = 0; i < 4 && count < gradients.size(); ++i) {
-            if (four.ratios[i] < active_share * worst) continue;
-            const auto [a, b, c] = std::array{one_of(four.a, i), one_of(four.b, i), one_of(four.c, i)};
-            gradients[count++] = restricted(tet_aspect_gradient(x, a, b, c).gradient, f);
-        }
+    for (std::size_t i = 0; i < 4 * fours.size() && count < gradients.size(); ++i) {
+        if (fours[i / 4].ratios[i % 4] < active_share * worst) continue;
+        const auto& [a, b, c] = star[std::min(i, star.size() - 1)];
+        gradients[count++] = restricted(tet_aspect_gradient(x, a, b, c).gradient, f);
+    }
     return -shortest_in_hull({gradients.data(), count});
 }
 
@@ -108,10 +88,10 @@ double worst_in_star(std::span<const StarFacet> star, const Vec3& x, double boun
 
 Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freedom& f, double good_enough) {
     auto fours = by_fours(star);
-    Place best{start, find_ratios(fours, start, infinity)};
+    Place best{start, find_all_ratios(fours, start, infinity)};
     double reach = first_step * shortest_distance(star, start);
     for (int step = 0; step < most_steps && best.worst > good_enough; ++step) {
-        const Vec3 slope = descent(fours, best.x, best.worst, f);
+        const Vec3 slope = descent(star, fours, best.x, best.worst, f);
         const double steepness = norm(slope);
         if (!(steepness > 0) || !std::isfinite(steepness)) break;
         // As far as the linear model takes the worst ratio to the goal, but within reach.
@@ -119,7 +99,7 @@ Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freed
         bool improved = false;
         for (int halving = 0; halving < most_halvings && !improved; ++halving, length /= 2) {
             const Vec3 x = best.x + length / steepness * slope;
-            const double worst = find_ratios(fours, x, (1 - least_smoothing_gain) * best.worst);
+            const double worst = find_all_ratios(fours, x, (1 - least_smoothing_gain) * best.worst);
             if (worst < (1 - least_smoothing_gain) * best.worst) {
                 best = {x, worst};
                 improved = true;

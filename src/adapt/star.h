@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/tetrahedron.h"
 #include <kropla/mesh/mesh.h>
 #include <kropla/mesh/topology.h>
 
@@ -8,12 +9,6 @@
 #include <vector>
 
 namespace kropla {
-
-/// A facet of a star-shaped polyhedron, by its corners, seen counter-clockwise from outside: with a point x
-/// inside it makes the tet (x, a, b, c).
-struct StarFacet {
-    Vec3 a, b, c;
-};
 
 /// The link of a vertex as the polyhedron in which it may move.
 void star_of_ball(const Mesh& mesh, Vertex v, std::span<const Tet> ball, std::vector<StarFacet>& star);

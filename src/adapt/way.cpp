@@ -67,26 +67,8 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& start, 
     return positive_share(e, de, least);
 }
 
-/// The length of the longest row.
-[[gnu::always_inline]] inline Four longest(const std::array<FourVec3, 3>& rows) {
-    return square_root(greater(greater(squared_norm(rows[0]), squared_norm(rows[1])), squared_norm(rows[2])));
-}
-
-/// Which of four cells keep `least` of their volume on the way without doubt, told by their sizes: a determinant
-/// of rows that are no longer than L and change by no more than D changes by at most (L + D)^3 - L^3 [by
-/// Hadamard's inequality for each of its terms].
-KROPLA_FOR_EACH_PROCESSOR
-void tell_safe(const FourPlaces& from, const FourPlaces& to, double least, std::array<bool, 4>& safe) {
-    const FourTets start = gathered(from), end = gathered(to);
-    const std::array<FourVec3, 3> e = {start.b - start.a, start.c - start.a, start.d - start.a};
-    const FourVec3 da = end.a - start.a;
-    const std::array<FourVec3, 3> de = {end.b - start.b - da, end.c - start.c - da, end.d - start.d - da};
-    const Four l = longest(e), d = longest(de);
-    const Four surplus = (1 - least) * determinant(e[0], e[1], e[2]) - d * (3 * l * (l + d) + d * d);
-    for (std::size_t i = 0; i < 4; ++i) safe[i] = surplus[i] > 0;
-}
-
-/// The same for one corner of a prism, whose rows differ in length: told by the product of the lengths.
+/// Does the corner of a prism keep its Jacobian without doubt? As surely_keep_volume for a tet, but told by the product of
+/// the lengths of the rows, which differ.
 bool is_surely_safe(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de, double least) {
     double longest = 1, lengths = 1;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -115,9 +97,8 @@ MoveReport check_way(const ZoneMotion& motion, const Mesh& mesh, const Array<Ver
     std::vector<double> safe(motion.cells.size(), 1);
     for_all((safe.size() + 3) / 4, [&](std::size_t four) {
         const std::size_t first = 4 * four;
-        std::array<bool, 4> is_safe;
-        tell_safe(four_cells(motion.cells, mesh, first, start), four_cells(motion.cells, mesh, first, motion.place), least,
-                  is_safe);
+        const auto is_safe = surely_keep_volume(four_cells(motion.cells, mesh, first, start),
+                                                four_cells(motion.cells, mesh, first, motion.place), least);
         for (std::size_t i = 0; i < 4 && first + i < safe.size(); ++i)
             if (!is_safe[i]) safe[first + i] = safe_fraction(mesh, motion.cells[first + i], start, motion.place, least);
     });
