@@ -11,6 +11,7 @@
 
 #include "adapt/stepping.h"
 #include <kropla/step/initial_mesh.h>
+#include "adapt/constants.h"
 #include "adapt/zone.h"
 #include <kropla/mesh/quality.h>
 

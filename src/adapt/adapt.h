@@ -160,13 +160,4 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 /// above the floor because its budget (`cut_out`) was spent.
 Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
 
-// --- Motion ------------------------------------------------------------------------------------------------------
-
-inline constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
-
-/// The largest fraction in [0, 1] of the displacements up to which all of `cells` keep a volume of at least
-/// `least` of what they have; from the cubic of each cell's volume along its path.
-[[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells,
-                                   const Array<Vertex, Vec3>& displacement, double least = least_volume_kept);
-
 }  // namespace kropla

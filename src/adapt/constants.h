@@ -13,7 +13,6 @@ namespace kropla {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();  // R/r of what is no cell
 
 // --- What pays
-
 /// [-] fall of the worst R/r, relative, by a swap, a collapse, a split or a cluster. Smaller: 3 % more swaps at 1e-5, for
 /// nothing. Larger: cells stay bad; worst R/r 5.05 at 0.05. The ten steps.
 inline constexpr double least_gain = 1e-3;
@@ -27,7 +26,6 @@ inline constexpr double least_energy_gain = 0.05;
 inline constexpr double passable_after_swap = 0.96;
 
 // --- Swaps (swap.cpp, improve.cpp)
-
 /// [-] how much longer than the edge that goes a new diagonal may be. Smaller: at 1, 1 % of the swaps are missed. Larger:
 /// questions for nothing. The ten steps.
 inline constexpr double diagonal_tolerance = 1.05;
@@ -36,7 +34,6 @@ inline constexpr double diagonal_tolerance = 1.05;
 inline constexpr int most_swap_rounds = 6;
 
 // --- Smoothing (star.cpp, optimise.cpp, improve.cpp)
-
 /// [of the bound] to which a bad vertex is smoothed. Smaller: more steps of descent. Larger: at 1, cells are bad again at
 /// the next step, 4 % more swaps, 9 % more splits. The ten steps.
 inline constexpr double smoothing_goal = 0.9;
@@ -70,7 +67,6 @@ inline constexpr int most_retreats = 5;
 inline constexpr int most_passes = 4;
 
 // --- Collapses
-
 /// [target sizes] the longest edge that a collapse for quality may make. Smaller: it is refused, and a split comes instead.
 /// Larger: the edge is split again. Of no account from 1.5 to 3 in the ten steps; chosen.
 inline constexpr double longest_by_quality = 2.0;
@@ -80,7 +76,6 @@ inline constexpr double longest_by_quality = 2.0;
 inline constexpr double longest_by_size = 1.05;
 
 // --- Clusters (remesh.cpp, improve.cpp)
-
 /// [good_enough] worse cells are cut out with two rings around them instead of one. Smaller: larger clusters for
 /// little. Larger: bad cells are left. Chosen.
 inline constexpr double two_rings_above = 1.03;
@@ -103,7 +98,6 @@ inline constexpr double most_points_per_cell = 10;
 inline constexpr int lasting_rings = 2;
 
 // --- Budgets, in what is handled. Smaller: bad cells are given up. Larger: longer until a hopeless mesh is refused
-
 /// in which a cell found stuck is tried again as others have changed. Chosen.
 inline constexpr int most_rounds = 3;
 /// cells for which an operator is sought, and splits, for a single bad one; splits for each further one: more vertices only
@@ -119,8 +113,9 @@ inline constexpr double cells_like_a_treatment = 3;
 /// of a cluster's filling, per bad cell: it is thrown away if it does not become good. Chosen.
 inline constexpr double treatments_within = 5;
 
-// --- Motion (move.cpp, mesh_step.cpp)
-
+// --- Motion (move.cpp, way.cpp, mesh_step.cpp)
+/// [of a cell's volume] that it keeps anywhere on its way. Smaller: flat cells half-way. Larger: refused early. Chosen.
+inline constexpr double least_volume_kept = 0.05;
 /// [largest semi-axes] how far a displacement goes. Smaller: cells are strained more. Larger: more of them move; with eight,
 /// twice as many, and a step takes 1.6 times as long: docs/performance.md.
 inline constexpr double reach_in_body_sizes = 6.0;
@@ -142,7 +137,6 @@ inline constexpr double least_leg = 0.02;
 inline constexpr double least_jacobian = 0.1;
 
 // --- After a refusal (2.2)
-
 /// [target sizes] around the place of trouble that are remeshed. Smaller: it gets stuck again. Larger: more cells are
 /// replaced, and the solution projected. Chosen.
 inline constexpr double trouble_in_sizes = 3;
@@ -159,7 +153,6 @@ inline constexpr std::size_t refusals_until_all_anew = 3;
 inline constexpr double cut_out_of_trouble = 50;
 
 // --- What is told (refusal.cpp, fits_domain.cpp)
-
 /// [target sizes] across a place of trouble: in less, a cell has to be flat, or smaller than wanted, and the gap is named.
 inline constexpr double narrow_in_sizes = 1;
 /// [of the box's width] vertices on a face may be off it. Smaller: rounding is refused. Larger: a box that does not fit.

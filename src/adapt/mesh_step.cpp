@@ -272,7 +272,8 @@ std::optional<Refusal> MeshStep::turned_on_its_way() const {
     const double dt = target_time_ - time_;
     if (!way_.arrived) return refused(way_.limiting, fault, way_.fraction * dt);
     for (Tet t : at_inner_shells_)
-        if (const double safe = safe_fraction(before_, current_, {&t, 1}, least_volume_kept); safe < 1)
+        if (const double safe = safe_fraction(current_, {&t, 1}, before_.position, current_.position, least_volume_kept);
+            safe < 1)
             return refused(t, fault, safe * dt);
     for (const Prism& prism : all_prisms(current_)) {
         const auto from = prism_corners(before_, prism);

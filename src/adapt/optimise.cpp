@@ -48,10 +48,6 @@ bool equalise_volumes(const Zone& zone, ZoneMotion& motion, const Mesh& mesh) {
     return true;
 }
 
-void measure_ball(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, Vertex v) {
-    for (Tet t : zone.ball[v]) motion.ratio[t] = aspect_ratio(motion, mesh, t);
-}
-
 /// Takes the vertices of cells worse than `above` back to `places`, by number of `vertices`. Returns whether there
 /// were any.
 bool retreat(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, const std::vector<Vec3>& places, double above) {
@@ -93,7 +89,7 @@ int optimise_worst(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, doubl
         const auto apart = take_apart(zone, vertices);
         for_all(apart.size(), [&](std::size_t i) {
             std::vector<StarFacet> star;
-            star_of_ball(zone, motion, mesh, apart[i], star);
+            star_of_ball(mesh, motion.place, apart[i], zone.ball[apart[i]], star);
             Vec3& place = motion.place[apart[i]];
             const Place best = best_place(star, place, freedom(zone, motion, apart[i]), smoothing_goal * above);
             if (best.x == place) return;
@@ -108,6 +104,10 @@ int optimise_worst(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, doubl
 
 }  // namespace
 
+void measure_ball(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, Vertex v) {
+    for (Tet t : zone.ball[v]) motion.ratio[t] = aspect_ratio(motion, mesh, t);
+}
+
 void measure(ZoneMotion& motion, const Mesh& mesh) {
     const std::size_t count = motion.cells.size();
     for_all((count + 3) / 4, [&](std::size_t four) {
@@ -119,15 +119,11 @@ void measure(ZoneMotion& motion, const Mesh& mesh) {
 
 std::optional<Changes> optimise_places(const Zone& zone, ZoneMotion& motion, const Mesh& mesh,
                                        const AdaptOptions& options) {
-    std::vector<Vec3> moved;
-    for (Vertex v : motion.vertices) moved.push_back(motion.place[v]);
-    const auto take_back = [&] {
-        for (std::size_t i = 0; i < moved.size(); ++i) motion.place[motion.vertices[i]] = moved[i];
-    };
+    const auto moved = places(motion);
     for (int i = 0; i < options.relaxations; ++i) {
         heed(options.watch);
         if (!equalise_volumes(zone, motion, mesh)) {
-            take_back();
+            put_back(motion, moved);
             break;
         }
     }
@@ -135,7 +131,7 @@ std::optional<Changes> optimise_places(const Zone& zone, ZoneMotion& motion, con
     const double spoilt = std::max(options.good_enough, near_the_floor * options.floor);
     for (int i = 0; i < most_retreats && retreat(zone, motion, mesh, moved, spoilt); ++i) heed(options.watch);
     if (std::ranges::any_of(motion.cells, [&](Tet t) { return !std::isfinite(motion.ratio[t]); })) {
-        take_back();
+        put_back(motion, moved);
         return std::nullopt;
     }
     Changes changes;

@@ -9,9 +9,11 @@
 #include "adapt/paper.h"
 
 #include "adapt/constants.h"
+#include "adapt/propose.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -42,31 +44,14 @@ int smooth_for_quality(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, s
     std::vector<StarFacet> star;
     for (Vertex v : vertices) {
         const Vec3 place = laplacian_place(zone, motion, mesh, v, weights);
-        star_of_ball(zone, motion, mesh, v, star);
+        star_of_ball(mesh, motion.place, v, zone.ball[v], star);
         const double worst = worst_in_star(star, motion.place[v], infinity);
         if (place == motion.place[v] || worst_in_star(star, place, worst) > worst) continue;
         motion.place[v] = place;
-        for (Tet t : zone.ball[v]) motion.ratio[t] = aspect_ratio(motion, mesh, t);
+        measure_ball(zone, motion, mesh, v);
         ++moved;
     }
     return moved;
-}
-
-/// Where the zone's vertices are, and how good that is.
-struct Places {
-    std::vector<Vec3> of_vertices;
-    double worst;
-};
-
-Places places(const ZoneMotion& motion, double worst) {
-    Places now{{}, worst};
-    for (Vertex v : motion.vertices) now.of_vertices.push_back(motion.place[v]);
-    return now;
-}
-
-void put_back(ZoneMotion& motion, const Mesh& mesh, const Places& then) {
-    for (std::size_t i = 0; i < motion.vertices.size(); ++i) motion.place[motion.vertices[i]] = then.of_vertices[i];
-    measure(motion, mesh);
 }
 
 double worst_ratio(const ZoneMotion& motion) {
@@ -75,33 +60,16 @@ double worst_ratio(const ZoneMotion& motion) {
     return worst;
 }
 
-/// The best swap of those that take an edge or a facet of the cell away, if what it makes is better than the cell.
-std::optional<Cavity> best_swap(const Mesh& mesh, Tet t) {
-    double bound = (1 - least_gain) * aspect_ratio(mesh, t);
-    std::optional<Cavity> best;
-    const auto look_at = [&](std::optional<Cavity> cavity) {
-        if (!cavity || cavity->worst_after >= bound) return;
-        bound = cavity->worst_after;
-        best = std::move(cavity);
-    };
-    for (std::size_t k = 0; k < tet_edges.size(); ++k) {
-        const Edge edge = tet_edge(mesh, t, k);
-        look_at(edge_removal(mesh, shell(mesh, edge, t), edge, {false, bound}));
-    }
-    for (int i = 0; i < 4; ++i) look_at(face_removal(mesh, {t, i}, {false, bound}));
-    return best;
-}
-
-bool is_worse_than(const Mesh& mesh, Tet t, double above) { return alive(mesh, t) && aspect_ratio(mesh, t) > above; }
-
 /// Swaps cells worse than `above` away, and those that replace them.
 Changes swap_worse(Mesh& mesh, std::span<const Tet> cells, double above, const Watch* watch) {
+    constexpr std::array<std::size_t, 6> all_edges = {0, 1, 2, 3, 4, 5};
     Changes changes;
     std::vector<Tet> bad(cells.begin(), cells.end());
     for (std::size_t i = 0; i < bad.size(); ++i) {
-        if (!is_worse_than(mesh, bad[i], above)) continue;
+        if (!is_worse(mesh, bad[i], above)) continue;
         heed(watch);
-        const auto cavity = best_swap(mesh, bad[i]);
+        const double bound = (1 - least_gain) * aspect_ratio(mesh, bad[i]);
+        const auto cavity = best_swap(mesh, bad[i], all_edges, true, bound);
         if (!cavity) continue;
         const auto known = static_cast<std::ptrdiff_t>(changes.cells.size());
         carry_out(mesh, *cavity, changes);
@@ -125,7 +93,8 @@ std::optional<Changes> smooth_places(const Zone& zone, ZoneMotion& motion, const
     Changes changes;
     measure(motion, mesh);
     double worst = worst_ratio(motion);
-    Places best = places(motion, worst);
+    double least_worst = worst;
+    auto best = places(motion);
     while (worst > good && changes.smoothing_sweeps < paper.sweeps) {
         heed(options.watch);
         const auto vertices = vertices_of_worse(zone, motion, mesh, good);
@@ -138,11 +107,17 @@ std::optional<Changes> smooth_places(const Zone& zone, ZoneMotion& motion, const
         ++changes.smoothing_sweeps;
         changes.moved += moved;
         worst = worst_ratio(motion);
-        if (worst <= best.worst) best = places(motion, worst);
+        if (worst <= least_worst) {
+            least_worst = worst;
+            best = places(motion);
+        }
         if (moved == 0) break;
     }
-    if (worst > best.worst) put_back(motion, mesh, best);
-    if (!std::isfinite(best.worst)) return std::nullopt;
+    if (worst > least_worst) {
+        put_back(motion, best);
+        measure(motion, mesh);
+    }
+    if (!std::isfinite(least_worst)) return std::nullopt;
     return changes;
 }
 
@@ -151,7 +126,7 @@ Changes remesh_clusters(Mesh& mesh, std::span<const Tet> cells, double above, co
     Changes changes = swap_worse(mesh, cells, options.swap_above, options.watch);
     std::vector<Tet> poor(cells.begin(), cells.end());
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
-    std::erase_if(poor, [&](Tet t) { return !is_worse_than(mesh, t, above); });
+    std::erase_if(poor, [&](Tet t) { return !is_worse(mesh, t, above); });
     AdaptOptions well = options;  // so that it lasts, where a small cluster does that
     well.floor = std::min(above, std::max(options.paper->remeshed * options.floor, options.good_enough));
     well.largest_ring = lasting_rings;

@@ -58,6 +58,29 @@ bool stands_elsewhere(const Mesh& mesh, std::span<const Vertex> vertices, const 
 
 }  // namespace
 
+std::optional<Cavity> best_swap(const Mesh& mesh, Tet t, std::span<const std::size_t> edges, bool facets, double bound) {
+    std::optional<Cavity> best;
+    Shell around;
+    const auto keep_better = [&](std::optional<Cavity> cavity) {
+        if (!cavity || cavity->worst_after >= bound) return;
+        bound = cavity->worst_after;
+        best = std::move(cavity);
+    };
+    for (std::size_t k : edges) {
+        const Edge edge = tet_edge(mesh, t, k);
+        shell(mesh, edge, t, around);
+        keep_better(edge_removal(mesh, around, edge, {false, bound}));
+    }
+    for (int i = 0; facets && i < 4; ++i) keep_better(face_removal(mesh, {t, i}, {false, bound}));
+    return best;
+}
+
+bool is_worse(const Mesh& mesh, Tet t, double than) { return alive(mesh, t) && aspect_ratio(mesh, t) > than; }
+
+int count_worse(const Mesh& mesh, std::span<const Tet> cells, double than) {
+    return static_cast<int>(std::ranges::count_if(cells, [&](Tet t) { return is_worse(mesh, t, than); }));
+}
+
 bool is_tangled(const Mesh& mesh, std::span<const Tet> cells) {
     return std::ranges::any_of(cells, [&](Tet t) { return alive(mesh, t) && !std::isfinite(aspect_ratio(mesh, t)); });
 }

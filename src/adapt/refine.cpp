@@ -125,7 +125,8 @@ bool is_out_of(SquaredBounds bounds, double square, double size) {
     return square > bounds.most * (size * size) || square < bounds.least * (size * size);
 }
 
-void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, Tet t, SquaredBounds bounds, std::vector<WrongEdge>& wrong) {
+void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, Tet t, SquaredBounds bounds,
+                      std::vector<WrongEdge>& wrong) {
     for (std::size_t k = 0; k < tet_edges.size(); ++k) {
         const auto [a, b] = tet_edge(mesh, t, k);
         const double size = (motion.size[a] + motion.size[b]) / 2;

@@ -5,10 +5,10 @@
 
 #include "adapt/budget.h"
 #include "adapt/constants.h"
+#include "adapt/propose.h"
 #include "base/random.h"
 #include <kropla/generate/generate.h>
 #include "generate/sampling.h"
-#include "mesh/index_set.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
@@ -363,7 +363,7 @@ void remesh_regions(Mesh& mesh, const std::vector<Tet>& bad, const Snapshot& at_
                     Changes& changes) {
     std::set<Region> tried;
     for (Tet t : bad) {
-        if (!alive(mesh, t) || !(aspect_ratio(mesh, t) > options.floor)) continue;
+        if (!is_worse(mesh, t, options.floor)) continue;
         if (!tried.insert(mesh.region[t]).second) continue;
         const auto cavity = cluster_remesh(mesh, all_tets(mesh, mesh.region[t]), at_time, options);
         if (!cavity) continue;
@@ -380,16 +380,13 @@ Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, 
     Budget budget(allowed);
     std::vector<Tet> left;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (!alive(mesh, cells[i]) || aspect_ratio(mesh, cells[i]) <= options.floor) continue;
+        if (!is_worse(mesh, cells[i], options.floor)) continue;
         heed(options.watch, "repairing cells", static_cast<double>(i) / static_cast<double>(cells.size()));
         if (!climb(mesh, cells[i], at_time, options, budget, changes)) left.push_back(cells[i]);
     }
     if (options.whole_region) remesh_regions(mesh, left, at_time, options, changes);
     changes.cut_out += static_cast<int>(allowed - budget.left());
-    if (budget.spent())
-        changes.given_up += static_cast<int>(std::ranges::count_if(left, [&](Tet t) {
-            return alive(mesh, t) && aspect_ratio(mesh, t) > options.floor;
-        }));
+    if (budget.spent()) changes.given_up += count_worse(mesh, left, options.floor);
     return changes;
 }
 

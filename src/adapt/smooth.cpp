@@ -51,7 +51,7 @@ std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices,
         const Vec3 place = laplacian_place(mesh, v, weights);
         if (place == mesh.position[v]) continue;
         ball(mesh, v, around);
-        star_of_ball(mesh, v, around, star);
+        star_of_ball(mesh, mesh.position, v, around, star);
         const double worst = worst_in_star(star, mesh.position[v], infinity);
         if (worst_in_star(star, place, worst) > worst) continue;
         mesh.position[v] = place;

@@ -39,7 +39,8 @@ double find_all_ratios(std::span<FourFacets> star, const Vec3& x, double bound) 
 }
 
 /// The direction of steepest descent of the worst ratio; its length is the slope along it. `fours` has the ratios at `x`.
-Vec3 descent(std::span<const StarFacet> star, std::span<const FourFacets> fours, const Vec3& x, double worst, const Freedom& f) {
+Vec3 descent(std::span<const StarFacet> star, std::span<const FourFacets> fours, const Vec3& x, double worst,
+             const Freedom& f) {
     std::array<Vec3, 16> gradients;
     std::size_t count = 0;
     for (std::size_t i = 0; i < 4 * fours.size() && count < gradients.size(); ++i) {
@@ -58,11 +59,12 @@ double shortest_distance(std::span<const StarFacet> star, const Vec3& x) {
 
 }  // namespace
 
-void star_of_ball(const Mesh& mesh, Vertex v, std::span<const Tet> ball, std::vector<StarFacet>& star) {
+void star_of_ball(const Mesh& mesh, const Array<Vertex, Vec3>& places, Vertex v, std::span<const Tet> ball,
+                  std::vector<StarFacet>& star) {
     star.clear();
     for (Tet t : ball) {
         const auto [a, b, c] = facet_vertices(mesh, {t, corner_of(mesh, t, v)});
-        star.push_back({mesh.position[a], mesh.position[b], mesh.position[c]});
+        star.push_back({places[a], places[b], places[c]});
     }
 }
 
@@ -115,7 +117,7 @@ Place better_place(const Mesh& mesh, Vertex v, std::span<const Tet> ball, double
     const Freedom f = freedom(constraint(mesh, v, ball));
     if (f.none()) return {mesh.position[v], infinity};
     std::vector<StarFacet> star;
-    star_of_ball(mesh, v, ball, star);
+    star_of_ball(mesh, mesh.position, v, ball, star);
     return best_place(star, mesh.position[v], f, good_enough);
 }
 

@@ -10,8 +10,9 @@
 
 namespace kropla {
 
-/// The link of a vertex as the polyhedron in which it may move.
-void star_of_ball(const Mesh& mesh, Vertex v, std::span<const Tet> ball, std::vector<StarFacet>& star);
+/// The link of a vertex, its vertices at `places`, as the polyhedron in which it may move.
+void star_of_ball(const Mesh& mesh, const Array<Vertex, Vec3>& places, Vertex v, std::span<const Tet> ball,
+                  std::vector<StarFacet>& star);
 
 /// Along which axes a vertex may move: not across the faces of the box it lies on.
 struct Freedom {

@@ -46,16 +46,6 @@ double positive_share(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& d
     return positive_until(b);
 }
 
-double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displacement, double least) {
-    const auto& v = mesh.tets[t];
-    std::array<Vec3, 3> e, de;
-    for (int i = 0; i < 3; ++i) {
-        e[as_size(i)] = mesh.position[v[as_size(i + 1)]] - mesh.position[v[0]];
-        de[as_size(i)] = displacement[v[as_size(i + 1)]] - displacement[v[0]];
-    }
-    return positive_share(e, de, least);
-}
-
 double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& start, const Array<Vertex, Vec3>& place,
                      double least) {
     const auto& v = mesh.tets[t];
@@ -86,13 +76,6 @@ std::array<Vec3, 3> edges_at(const std::array<Vec3, 6>& x, std::size_t i) {
 
 }  // namespace
 
-double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<Vertex, Vec3>& displacement,
-                     double least) {
-    double fraction = 1;
-    for (Tet t : cells) fraction = std::min(fraction, safe_fraction(mesh, t, displacement, least));
-    return fraction;
-}
-
 MoveReport check_way(const ZoneMotion& motion, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least) {
     std::vector<double> safe(motion.cells.size(), 1);
     for_all((safe.size() + 3) / 4, [&](std::size_t four) {
@@ -108,9 +91,10 @@ MoveReport check_way(const ZoneMotion& motion, const Mesh& mesh, const Array<Ver
     return report;
 }
 
-double safe_fraction(const Mesh& from, const Mesh& to, std::span<const Tet> cells, double least) {
+double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<Vertex, Vec3>& start,
+                     const Array<Vertex, Vec3>& place, double least) {
     double fraction = 1;
-    for (Tet t : cells) fraction = std::min(fraction, safe_fraction(from, t, from.position, to.position, least));
+    for (Tet t : cells) fraction = std::min(fraction, safe_fraction(mesh, t, start, place, least));
     return fraction;
 }
 

@@ -189,18 +189,19 @@ FourPlaces four_cells(std::span<const Tet> cells, const Mesh& mesh, std::size_t 
     return tets;
 }
 
-void star_of_ball(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh, Vertex vertex,
-                  std::vector<StarFacet>& star) {
-    star.clear();
-    for (Tet t : zone.ball[vertex]) {
-        const auto [a, b, c] = facet_vertices(mesh, {t, corner_of(mesh, t, vertex)});
-        star.push_back({motion.place[a], motion.place[b], motion.place[c]});
-    }
-}
-
 Freedom freedom(const Zone& zone, const ZoneMotion& motion, Vertex v) {
     const unsigned axes = motion.moves[v] == ZoneMotion::by_itself ? zone.axes[v] : 0u;
     return {{(axes & 1) != 0, (axes & 2) != 0, (axes & 4) != 0}};
+}
+
+std::vector<Vec3> places(const ZoneMotion& motion) {
+    std::vector<Vec3> now;
+    for (Vertex v : motion.vertices) now.push_back(motion.place[v]);
+    return now;
+}
+
+void put_back(ZoneMotion& motion, std::span<const Vec3> places) {
+    for (std::size_t i = 0; i < places.size(); ++i) motion.place[motion.vertices[i]] = places[i];
 }
 
 std::vector<Vertex> vertices_of_worse(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh, double above) {

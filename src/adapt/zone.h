@@ -84,9 +84,12 @@ MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::
                          double t1, Zone& zone, ZoneMotion& motion, Follow surroundings = Follow::spread);
 
 [[nodiscard]] double aspect_ratio(const ZoneMotion& motion, const Mesh& mesh, Tet t);
-void star_of_ball(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh, Vertex v, std::vector<StarFacet>& star);
 /// Of a vertex in the motion: none if it does not move by itself or is held.
 [[nodiscard]] Freedom freedom(const Zone& zone, const ZoneMotion& motion, Vertex v);
+
+/// Where its vertices are; and there again.
+[[nodiscard]] std::vector<Vec3> places(const ZoneMotion& motion);
+void put_back(ZoneMotion& motion, std::span<const Vec3> places);
 
 /// The vertices of cells worse than `above` that may move, each once, in ascending order.
 [[nodiscard]] std::vector<Vertex> vertices_of_worse(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh,
@@ -96,8 +99,9 @@ void star_of_ball(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh, 
 /// cells; nothing, and nothing is moved, if a cell is turned over or flat at `place`.
 [[nodiscard]] std::optional<Changes> optimise_places(const Zone& zone, ZoneMotion& motion, const Mesh& mesh,
                                                      const AdaptOptions& options);
-/// Asks for the aspect ratios of all cells.
+/// Asks for the aspect ratios of all cells; of those at a vertex.
 void measure(ZoneMotion& motion, const Mesh& mesh);
+void measure_ball(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, Vertex v);
 /// Do all cells keep a volume of at least `least` of what they have, all the way from `start` to `place`?
 [[nodiscard]] MoveReport check_way(const ZoneMotion& motion, const Mesh& mesh, const Array<Vertex, Vec3>& start,
                                    double least);
@@ -108,7 +112,6 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const ZoneMotion& motion, co
 void write_places(const ZoneMotion& motion, Mesh& mesh);
 
 // For place_boundary and movable.
-
 /// Makes room for what the mesh has.
 void fit(ZoneMotion& motion, const Mesh& mesh);
 /// Lists the cells with a vertex that moves, and those beyond.

@@ -1,5 +1,6 @@
 #include "adapt/zone.h"
 #include "adapt/cases.h"
+#include "adapt/way.h"
 #include "base/random.h"
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
@@ -24,7 +25,9 @@ double volume_on_the_way(Mesh mesh, const Array<Vertex, Vec3>& displacement, dou
 }
 
 double safe_fraction_of(const Mesh& mesh, const Array<Vertex, Vec3>& displacement, double least) {
-    return safe_fraction(mesh, all_tets(mesh), displacement, least);
+    Array<Vertex, Vec3> place = mesh.position;
+    for (Vertex v : place.indices()) place[v] += displacement[v];
+    return safe_fraction(mesh, all_tets(mesh), mesh.position, place, least);
 }
 
 TEST(SafeFraction, AgreesWithSamplingTheWay) {
@@ -82,7 +85,7 @@ TEST(SafeFraction, IsTheWholeWayWithoutMotionOrAllTogether) {
     EXPECT_EQ(safe_fraction_of(mesh, displacement, 0.05), 1);
     for (Vec3& d : displacement) d = {1, -2, 0.5};
     EXPECT_EQ(safe_fraction_of(mesh, displacement, 0.05), 1);
-    EXPECT_EQ(safe_fraction(mesh, {}, displacement), 1);
+    EXPECT_EQ(safe_fraction(mesh, {}, mesh.position, mesh.position, 0.05), 1);
 }
 
 TEST(SafeFraction, IsTheLeastOfAllCells) {
@@ -92,7 +95,9 @@ TEST(SafeFraction, IsTheLeastOfAllCells) {
     const double fraction = safe_fraction_of(mesh, displacement, 0);
     EXPECT_NEAR(fraction, 0.5, 1.7e-5);  // it is found to 2^-16
     double least = 1;
-    for (Tet t : all_tets(mesh)) least = std::min(least, safe_fraction(mesh, {&t, 1}, displacement, 0));
+    Array<Vertex, Vec3> place = mesh.position;
+    place[Vertex(0)] += displacement[Vertex(0)];
+    for (Tet t : all_tets(mesh)) least = std::min(least, safe_fraction(mesh, {&t, 1}, mesh.position, place, 0));
     EXPECT_EQ(fraction, least);
 }
 

@@ -1,6 +1,7 @@
 #include "adapt/zone.h"
 
 #include "adapt/cases.h"
+#include "adapt/way.h"
 #include "base/random.h"
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
@@ -236,15 +237,15 @@ TEST(Zone, ItsWayIsAsSafeAsThatOfTheLeastSafeCell) {
     int arrived = 0, stopped = 0;
     for (double reach : {0.01, 0.05, 0.1, 0.3}) {
         auto [zone, motion] = movable(mesh, all_tets(mesh, surroundings));
-        Array<Vertex, Vec3> displacement(mesh.position.size());
         const auto up_to = [&] { return random.uniform(-reach, reach); };
-        for (Vertex v : motion.vertices) motion.place[v] += displacement[v] = {up_to(), up_to(), up_to()};
+        for (Vertex v : motion.vertices) motion.place[v] += Vec3{up_to(), up_to(), up_to()};
         const MoveReport report = check_way(motion, mesh, mesh.position, 0.05);
-        EXPECT_NEAR(report.fraction, safe_fraction(mesh, motion.cells, displacement, 0.05), 1e-12);
+        EXPECT_NEAR(report.fraction, safe_fraction(mesh, motion.cells, mesh.position, motion.place, 0.05), 1e-12);
         EXPECT_EQ(report.arrived, report.fraction == 1);
         (report.arrived ? arrived : stopped)++;
         if (!report.arrived) {
-            EXPECT_NEAR(report.fraction, safe_fraction(mesh, {&report.limiting, 1}, displacement, 0.05), 1e-12);
+            EXPECT_NEAR(report.fraction, safe_fraction(mesh, {&report.limiting, 1}, mesh.position, motion.place, 0.05),
+                        1e-12);
         }
     }
     EXPECT_GE(arrived, 2);
