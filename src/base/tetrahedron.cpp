@@ -61,6 +61,10 @@ double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 
 namespace {
 
+// What it brings to do four at once, in instructions by callgrind, as `advance` goes the ten steps of cases/quick.toml (no
+// heat, size.surface 3e-4, growth 0.15): one by one, tet_aspect_ratios makes them 7.6 % more, tet_energies 7.4 %,
+// find_ratios 6.7 %, surely_keep_volume 3.4 %, have_edge_out_of 2.9 %.
+
 /// The corners of four tets.
 struct FourTets {
     FourVec3 a, b, c, d;
