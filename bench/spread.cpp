@@ -11,6 +11,7 @@
 
 #include "adapt/stepping.h"
 #include <kropla/step/initial_mesh.h>
+#include "adapt/constants.h"
 #include "adapt/zone.h"
 #include <kropla/mesh/quality.h>
 
@@ -79,7 +80,7 @@ Stiffness stiffness(const Mesh& mesh, Tet t, bool stiffened) {
 /// The system for one component, by the mesh's vertices, where only those that are `open` may change it.
 struct System {
     const Mesh& mesh;
-    const Zone& zone;
+    const ZoneMotion& motion;
     const std::vector<Stiffness>& cells;
     std::vector<char> open;
 
@@ -87,7 +88,7 @@ struct System {
     [[nodiscard]] std::vector<double> product(const std::vector<double>& u) const {
         std::vector<double> result(u.size(), 0.0);
         for (std::size_t c = 0; c < cells.size(); ++c) {
-            const auto& v = mesh.tets[zone.cells[c]];
+            const auto& v = mesh.tets[motion.cells[c]];
             for (std::size_t i = 0; i < 4; ++i)
                 for (std::size_t j = 0; j < 4; ++j) result[at(v[i].value)] += cells[c][i][j] * u[at(v[j].value)];
         }
@@ -99,7 +100,7 @@ struct System {
     [[nodiscard]] std::vector<double> diagonal() const {
         std::vector<double> d(open.size(), 0.0);
         for (std::size_t c = 0; c < cells.size(); ++c)
-            for (std::size_t i = 0; i < 4; ++i) d[at(mesh.tets[zone.cells[c]][i].value)] += cells[c][i][i];
+            for (std::size_t i = 0; i < 4; ++i) d[at(mesh.tets[motion.cells[c]][i].value)] += cells[c][i][i];
         return d;
     }
 };
@@ -141,18 +142,18 @@ int solve(const System& system, std::vector<double>& u) {
 
 /// Puts the zone's vertices where the harmonic displacement takes them; those of bodies stand there already. `mesh`
 /// is as it was before. Returns the number of iterations.
-int spread_harmonically(const Mesh& mesh, Zone& zone, bool stiffened) {
+int spread_harmonically(const Mesh& mesh, const Zone& zone, ZoneMotion& motion, bool stiffened) {
     std::vector<Stiffness> cells;
-    for (Tet t : zone.cells) cells.push_back(stiffness(mesh, t, stiffened));
+    for (Tet t : motion.cells) cells.push_back(stiffness(mesh, t, stiffened));
     int iterations = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        System system{mesh, zone, cells, std::vector<char>(mesh.position.size(), 0)};
+        System system{mesh, motion, cells, std::vector<char>(mesh.position.size(), 0)};
         std::vector<double> u(mesh.position.size(), 0.0);
-        for (Vertex v : zone.vertices) system.open[at(v.value)] = freedom(zone, v).along[at(axis)];
-        for (Vertex v : zone.bodies) u[at(v.value)] = zone.place[v][axis] - mesh.position[v][axis];
+        for (Vertex v : motion.vertices) system.open[at(v.value)] = freedom(zone, motion, v).along[at(axis)];
+        for (Vertex v : motion.bodies) u[at(v.value)] = motion.place[v][axis] - mesh.position[v][axis];
         iterations += solve(system, u);
-        for (Vertex v : zone.vertices)
-            if (system.open[at(v.value)] != 0) zone.place[v][axis] = mesh.position[v][axis] + u[at(v.value)];
+        for (Vertex v : motion.vertices)
+            if (system.open[at(v.value)] != 0) motion.place[v][axis] = mesh.position[v][axis] + u[at(v.value)];
     }
     return iterations;
 }
@@ -173,39 +174,39 @@ struct Outcome {
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// One step by the way; the mesh is moved if no cell turns over.
-bool step(Way way, Mesh& mesh, const Domain& domain, double t0, double t1, Zone& zone, Outcome& outcome) {
+bool step(Way way, Mesh& mesh, const Domain& domain, double t0, double t1, ZoneMotion& motion, Outcome& outcome) {
     const std::vector<std::vector<Vertex>> bodies = {body_vertices(mesh)};
     Mesh moved = mesh;
-    clear(zone);
+    Zone zone;
+    begin_motion(motion);
     const double begin = cpu_seconds();
-    const bool arrived = move_boundary(moved, domain, bodies, t0, t1, zone).arrived;
+    const bool arrived = move_boundary(moved, domain, bodies, t0, t1, zone, motion).arrived;
     if (way != Way::ours)
-        outcome.iterations += spread_harmonically(mesh, zone, way == Way::stiffened);
+        outcome.iterations += spread_harmonically(mesh, zone, motion, way == Way::stiffened);
     const double spread = cpu_seconds();
-    if (way == Way::ours ? !arrived : !check_way(zone, mesh, mesh.position, least_volume_kept).arrived) return false;
+    if (way == Way::ours ? !arrived : !check_way(motion, mesh, mesh.position, least_volume_kept).arrived) return false;
     const double checked = cpu_seconds();
-    find_sizes(zone, snapshot(domain, t1));
-    if (!optimise_places(zone, mesh, AdaptOptions{})) return false;
+    if (!optimise_places(zone, motion, mesh, AdaptOptions{})) return false;
     outcome.spread_seconds += spread - begin;
     outcome.optimise_seconds += cpu_seconds() - checked;
-    write_places(zone, mesh);
+    write_places(motion, mesh);
     return true;
 }
 
 Outcome run(Way way, Mesh mesh, int steps) {
     const Domain domain = droplet();
     Outcome outcome;
-    Zone zone;
+    ZoneMotion motion;
     for (int i = 0; i < steps; ++i) {
-        if (!step(way, mesh, domain, end * i / case_steps, end * (i + 1) / case_steps, zone, outcome)) break;
-        const auto bad = std::ranges::count_if(zone.cells, [&](Tet t) { return zone.ratio[t] > limit; });
+        if (!step(way, mesh, domain, end * i / case_steps, end * (i + 1) / case_steps, motion, outcome)) break;
+        const auto bad = std::ranges::count_if(motion.cells, [&](Tet t) { return motion.ratio[t] > limit; });
         if (bad == 0 && outcome.good_steps == i) ++outcome.good_steps;
         ++outcome.steps;
         if (outcome.steps % report_every != 0) continue;
         outcome.above.push_back(bad);
         double sum = 0;
-        for (Tet t : zone.cells) sum += zone.ratio[t];
-        outcome.mean.push_back(sum / static_cast<double>(zone.cells.size()));
+        for (Tet t : motion.cells) sum += motion.ratio[t];
+        outcome.mean.push_back(sum / static_cast<double>(motion.cells.size()));
     }
     return outcome;
 }

@@ -27,7 +27,7 @@ struct Changes {
     int smoothing_sweeps = 0, moved = 0, swaps = 0, splits = 0, collapses = 0;
     int local_remeshes = 0, largest_ring = 0, global_remeshes = 0;
     int cells_replaced = 0, vertices_inserted = 0;
-    int treated = 0;  // bad cells for which a remedy was sought
+    int treated = 0;  // bad cells for which an operator was sought that helps
     int cut_out = 0;  // cells of the clusters that were cut out, whether or not it helped
     int given_up = 0; // bad cells that were left as they are since a budget was spent
 
@@ -115,7 +115,7 @@ struct AdaptOptions {
     double floor = 10.0;              // [-] R/r: the case's limit; cells above it are what the ladder climbs for
     double split_above = 1.59;        // [target sizes] longer edges are split
     double collapse_below = 0.625;    // [target sizes] shorter edges are collapsed
-    double treatments = 30;           // of bad cells that `improve` may seek a remedy for, per bad cell it begins with
+    double treatments = 30;           // of bad cells that `improve` may seek an operator for, per bad cell it begins with
     double cut_out = 5;               // cells that may be cut out in clusters, per cell looked at
     bool clusters = true;             // what nothing else helps is re-triangulated with the ring around it
     int largest_ring = 6;             // rings of cells that are added to a cluster one by one
@@ -159,38 +159,5 @@ Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptio
 /// with one more ring of cells each time, at last, once, with the whole region. `given_up` tells how many cells it left
 /// above the floor because its budget (`cut_out`) was spent.
 Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at, const AdaptOptions& options = {});
-
-// --- Motion ------------------------------------------------------------------------------------------------------
-
-inline constexpr double least_volume_kept = 0.05;  // of a cell's volume, anywhere on its way
-
-/// The largest fraction in [0, 1] of the displacements up to which all of `cells` keep a volume of at least
-/// `least` of what they have; from the cubic of each cell's volume along its path.
-[[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells,
-                                   const Array<Vertex, Vec3>& displacement, double least = least_volume_kept);
-
-struct Zone;  // zone.h
-
-/// How the surroundings follow the bodies: by their displacement, spread; or not at all, as in the paper, where they are
-/// to be smoothed then.
-enum class Follow { spread, rest };
-
-struct MoveReport {
-    bool arrived = false;  // else the mesh is as it was
-    double fraction = 0;   // of the way that is safe for all cells
-    Tet limiting;          // the cell that stopped it, if it did not arrive
-};
-
-/// Finds where bodies that move rigidly from their places at `t0` to those at `t1` [s] take the vertices of their
-/// surroundings; nothing is moved yet. `bodies` are, per body, the vertices of its cells. `zone` is empty or follows
-/// the mesh; it comes to hold the surroundings that the displacement reaches, and may hold more. Vertices that moved
-/// since `begin_motion` still count as moving.
-void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone, Follow surroundings = Follow::spread);
-
-/// The same, and moves them there if every cell stays valid on the way; else tells how far it could go. Connectivity
-/// is unchanged.
-MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone, Follow surroundings = Follow::spread);
 
 }  // namespace kropla

@@ -2,6 +2,7 @@
 
 #include <kropla/adapt/adapt.h>
 
+#include "adapt/constants.h"
 namespace kropla {
 
 /// What a loop may still do: counted in what it handles, never in seconds, so that the result is the same on every
@@ -22,8 +23,7 @@ private:
 
 /// The cells that may be cut out for the sake of bad ones among so many.
 [[nodiscard]] inline double cells_to_cut_out(std::size_t cells, const AdaptOptions& options) {
-    constexpr double for_one = 20000;  // a single bad one
-    return options.cut_out * static_cast<double>(cells) + for_one;
+    return options.cut_out * static_cast<double>(cells) + least_cut_out;
 }
 
 /// As in adapt.h, with a budget of cells that it shares with other attempts; nothing if that is spent.

@@ -12,7 +12,7 @@ Rotation inverse(const Rotation& r) {
     for (int i = 0; i < 3; ++i) {
         Vec3 unit;
         unit[i] = 1;
-        back.axes[static_cast<std::size_t>(i)] = rotated_back(r, unit);
+        back.axes[as_size(i)] = rotated_back(r, unit);
     }
     return back;
 }

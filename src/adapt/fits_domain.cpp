@@ -1,5 +1,6 @@
 #include "adapt/fits_domain.h"
 
+#include "adapt/constants.h"
 #include <kropla/base/error.h>
 #include <kropla/domain/words.h>
 #include <kropla/mesh/cells.h>
@@ -15,22 +16,19 @@
 namespace kropla {
 namespace {
 
-constexpr double most_off_its_face = 1e-9;     // [-] of the box's width
-constexpr double most_off_its_shape = 0.5;     // [surface sizes]; the generator's meshes are 0.15 at most off
-
 std::string region_words(Region region) { return "region " + std::to_string(region.value); }
 
 void check_regions(const Domain& domain, const Mesh& mesh) {
     std::vector<bool> has_cells(domain.bodies.size() + 1, false);
     const auto check = [&](Region region, const auto& what) {
-        if (region.value < 0 || static_cast<std::size_t>(region.value) >= has_cells.size())
+        if (region.value < 0 || as_size(region.value) >= has_cells.size())
             throw DomainError(what() + " is of " + region_words(region) + ", but the domain has " +
                               std::to_string(domain.bodies.size()) + " bodies");
     };
     for (Tet t : all_tets(mesh)) {
         check(mesh.region[t],
               [&] { return "cell " + std::to_string(t.value) + " at " + place_words(centroid(mesh, t)); });
-        has_cells[static_cast<std::size_t>(mesh.region[t].value)] = true;
+        has_cells[as_size(mesh.region[t].value)] = true;
     }
     for (const PrismLayer& layer : mesh.layers)
         for (Region region : {layer.region, layer.body}) check(region, [] { return std::string("a layer"); });
@@ -49,7 +47,7 @@ void check_faces(const Box& box, const Mesh& mesh) {
             const int axis = patch.value / 2;
             const double face = patch.value % 2 == 0 ? box.min[axis] : box.max[axis];
             for (int corner : tet_facets[i]) {
-                const Vec3& x = mesh.position[mesh.tets[t][static_cast<std::size_t>(corner)]];
+                const Vec3& x = mesh.position[mesh.tets[t][as_size(corner)]];
                 if (std::abs(x[axis] - face) <= most_off_its_face * width[axis]) continue;
                 throw DomainError("a facet of patch " + std::to_string(patch.value) + " has a vertex at " +
                                   place_words(x) + ", off " + wall_name(patch.value) + " of the domain's box");
@@ -69,13 +67,13 @@ void check_surfaces(const Domain& domain, const Mesh& mesh, double time) {
         for (std::size_t i = 0; i < 4; ++i) {
             const Tet n = mesh.neighbour[t][i];
             if (!n.exists() || mesh.region[t] == surroundings || mesh.region[n] == mesh.region[t]) continue;
-            const auto body = static_cast<std::size_t>(mesh.region[t].value) - 1;
+            const auto body = as_size(mesh.region[t].value) - 1;
             for (int corner : tet_facets[i])
-                check(body, mesh.position[mesh.tets[t][static_cast<std::size_t>(corner)]]);
+                check(body, mesh.position[mesh.tets[t][as_size(corner)]]);
         }
     for (const PrismLayer& layer : mesh.layers)
         for (int column = 0; column < count_columns(layer); ++column)
-            check(static_cast<std::size_t>(layer.body.value) - 1, mesh.position[column_vertex(layer, column, 0)]);
+            check(as_size(layer.body.value) - 1, mesh.position[column_vertex(layer, column, 0)]);
 }
 
 }  // namespace

@@ -6,36 +6,22 @@
 // step lowers the worst aspect ratio of what it replaces; that it ends soon, in any mesh, is due to a budget.
 
 #include "adapt/budget.h"
+#include "adapt/constants.h"
 #include "adapt/propose.h"
 #include "adapt/star.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 
 namespace kropla {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_gain = 1e-3;
-constexpr double passable_after_swap = 0.96;    // of good_enough: no swap for the energy makes a worse cell
-constexpr double longest_after_collapse = 2.0;  // [target sizes]
-constexpr double slightly_longer = 1.05;        // an edge may be than another that takes its place
-constexpr int most_swap_rounds = 6;             // of those that others have overtaken
-constexpr double far_from_good = 1.03;          // [good_enough]
-constexpr int most_rounds = 3;                  // a cell found stuck is tried again when others have changed
-constexpr double treatments_of_one = 100;       // that a single bad cell may ask for
-constexpr double splits_of_one = 50;            // and
-constexpr double splits_per_bad_cell = 1;       // more vertices only make more bad cells
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 enum class Kind { swap, move, collapse, split };
 
 /// What helps a bad cell: other cells in the place of some; or another place for a vertex, whose ball then stands
 /// as what is removed, with nothing added.
-struct Remedy {
+struct Operation {
     Kind kind;
     Cavity cavity;
     Vertex moved = {};
@@ -50,7 +36,7 @@ struct BadCell {
 /// What replaces the cell must be better than this.
 double bound(const BadCell& bad) { return (1 - least_gain) * bad.ratio; }
 
-bool is_worse(const BadCell& a, const BadCell& b) {
+bool comes_before(const BadCell& a, const BadCell& b) {
     return std::pair(-a.ratio, a.cell) < std::pair(-b.ratio, b.cell);
 }
 
@@ -63,15 +49,15 @@ void add_bad(const Mesh& mesh, std::vector<Tet> cells, double above, std::vector
     for (Tet t : cells)
         if (alive(mesh, t))
             if (const double ratio = aspect_ratio(mesh, t); ratio > above) bad.push_back({ratio, t});
-    std::sort(bad.begin() + known, bad.end(), is_worse);
-    std::inplace_merge(bad.begin(), bad.begin() + known, bad.end(), is_worse);
+    std::sort(bad.begin() + known, bad.end(), comes_before);
+    std::inplace_merge(bad.begin(), bad.begin() + known, bad.end(), comes_before);
 }
 
 std::array<double, 6> squared_edges(const Mesh& mesh, Tet t) {
     std::array<double, 6> lengths;
     for (std::size_t k = 0; k < 6; ++k) {
-        const auto [i, j] = tet_edges[k];
-        const double square = squared_norm(mesh.position[mesh.tets[t][at(i)]] - mesh.position[mesh.tets[t][at(j)]]);
+        const auto [a, b] = tet_edge(mesh, t, k);
+        const double square = squared_norm(mesh.position[a] - mesh.position[b]);
         lengths[k] = square >= 0 ? square : infinity;  // of places that are not finite
     }
     return lengths;
@@ -93,7 +79,7 @@ std::size_t longest_edge(const Mesh& mesh, Tet t) {
 }
 
 bool is_obtuse_at(const Mesh& mesh, Tet t, std::size_t edge) {
-    const auto place = [&](int corner) { return mesh.position[mesh.tets[t][at(corner)]]; };
+    const auto place = [&](int corner) { return mesh.position[mesh.tets[t][as_size(corner)]]; };
     const auto [i, j] = tet_edges[edge];
     const auto [k, l] = tet_edges[5 - edge];
     const Vec3 along = place(j) - place(i);
@@ -102,8 +88,8 @@ bool is_obtuse_at(const Mesh& mesh, Tet t, std::size_t edge) {
 
 /// The vertex across the facet opposite the corner, if it is not on the boundary.
 Vertex vertex_across(const Mesh& mesh, Tet t, int corner) {
-    const Tet n = mesh.neighbour[t][at(corner)];
-    return n.exists() ? mesh.tets[n][at(mirror_corner(mesh, {t, corner}))] : Vertex{};
+    const Tet n = mesh.neighbour[t][as_size(corner)];
+    return n.exists() ? mesh.tets[n][as_size(mirror_corner(mesh, {t, corner}))] : Vertex{};
 }
 
 /// Of the ways to cut an octahedron into four cells, the one along its shortest diagonal is nearly always the
@@ -115,8 +101,8 @@ bool may_be_swapped(const Mesh& mesh, Tet t, std::size_t edge) {
     const auto& v = mesh.tets[t];
     const Vertex across_k = vertex_across(mesh, t, k), across_l = vertex_across(mesh, t, l);
     if (!across_k.exists() || !across_l.exists() || across_k == across_l) return true;
-    const double diagonal = std::min(length(v[at(k)], across_k), length(v[at(l)], across_l));
-    return diagonal < slightly_longer * slightly_longer * length(v[at(i)], v[at(j)]);
+    const double diagonal = std::min(length(v[as_size(k)], across_k), length(v[as_size(l)], across_l));
+    return diagonal < diagonal_tolerance * diagonal_tolerance * length(v[as_size(i)], v[as_size(j)]);
 }
 
 /// The swap at a cell that is for the energy: away with its longest edge, where it is obtuse, if three or four
@@ -125,75 +111,45 @@ bool may_be_swapped(const Mesh& mesh, Tet t, std::size_t edge) {
 std::optional<Cavity> swap_longest_edge(const Mesh& mesh, Tet t, double limit) {
     const std::size_t longest = longest_edge(mesh, t);
     if (!is_obtuse_at(mesh, t, longest) || !may_be_swapped(mesh, t, longest)) return std::nullopt;
-    const auto [i, j] = tet_edges[longest];
-    const Edge e{mesh.tets[t][at(i)], mesh.tets[t][at(j)]};
+    const Edge e = tet_edge(mesh, t, longest);
     const Shell around = shell(mesh, e, t);
     if (around.ring.size() > 4) return std::nullopt;
     return edge_removal(mesh, around, e, {true, limit});
 }
 
 /// Asked for what helps; sees the mesh, and the cells that are new or have moved already.
-struct Doctor {
+struct Operators {
     const Mesh& mesh;
     const Snapshot& at_time;
     const AdaptOptions& options;
     const IndexSet<Tet>& changed;
     bool may_split;
 
-    [[nodiscard]] std::optional<Remedy> remedy(const BadCell& bad) const;
-    [[nodiscard]] std::optional<Cavity> swap_long_edge(const BadCell& bad) const;
-    [[nodiscard]] std::optional<Cavity> swap_any(const BadCell& bad) const;
-    [[nodiscard]] std::optional<Remedy> move(Tet t) const;
+    [[nodiscard]] std::optional<Operation> first_that_helps(const BadCell& bad) const;
+    [[nodiscard]] std::optional<Operation> move(Tet t) const;
     [[nodiscard]] std::optional<Cavity> collapse(const BadCell& bad) const;
     [[nodiscard]] std::optional<Cavity> split(const BadCell& bad) const;
     [[nodiscard]] bool makes_long_edge(const Cavity& cavity, Vertex to) const;
 };
 
-std::optional<Remedy> Doctor::remedy(const BadCell& bad) const {
-    if (auto cavity = swap_long_edge(bad)) return Remedy{Kind::swap, std::move(*cavity)};
+std::optional<Operation> Operators::first_that_helps(const BadCell& bad) const {
+    // By one of the three longest edges: in the default case they make 96 % of the swaps, for a third of the work.
+    const auto edges = edges_by_length(mesh, bad.cell);
+    const auto swap = [&](std::span<const std::size_t> some, bool facets) {
+        return best_swap(mesh, bad.cell, some, facets, bound(bad));
+    };
+    if (auto cavity = swap(std::span(edges).first(3), false)) return Operation{Kind::swap, std::move(*cavity)};
     if (auto other_place = move(bad.cell)) return other_place;
-    if (auto cavity = swap_any(bad)) return Remedy{Kind::swap, std::move(*cavity)};
-    if (auto cavity = collapse(bad)) return Remedy{Kind::collapse, std::move(*cavity)};
+    if (auto cavity = swap(std::span(edges).last(3), true)) return Operation{Kind::swap, std::move(*cavity)};
+    if (auto cavity = collapse(bad)) return Operation{Kind::collapse, std::move(*cavity)};
     if (!may_split) return std::nullopt;
-    if (auto cavity = split(bad)) return Remedy{Kind::split, std::move(*cavity)};
+    if (auto cavity = split(bad)) return Operation{Kind::split, std::move(*cavity)};
     return std::nullopt;
-}
-
-/// Takes the better of two proposals.
-void keep_better(std::optional<Cavity>& best, std::optional<Cavity> other) {
-    if (other && (!best || other->worst_after < best->worst_after)) best = std::move(other);
-}
-
-/// The best swap that takes one of these edges of the cell away.
-std::optional<Cavity> best_swap(const Mesh& mesh, const BadCell& bad, std::span<const std::size_t> edges) {
-    std::optional<Cavity> best;
-    Shell around;
-    for (std::size_t edge : edges) {
-        const auto [i, j] = tet_edges[edge];
-        const Edge e{mesh.tets[bad.cell][at(i)], mesh.tets[bad.cell][at(j)]};
-        shell(mesh, e, bad.cell, around);
-        keep_better(best, edge_removal(mesh, around, e, {false, best ? best->worst_after : bound(bad)}));
-    }
-    return best;
-}
-
-/// By one of the three longest edges: in the default case they make 96 % of the swaps, for a third of the work.
-std::optional<Cavity> Doctor::swap_long_edge(const BadCell& bad) const {
-    const auto edges = edges_by_length(mesh, bad.cell);
-    return best_swap(mesh, bad, std::span(edges).first(3));
-}
-
-std::optional<Cavity> Doctor::swap_any(const BadCell& bad) const {
-    const auto edges = edges_by_length(mesh, bad.cell);
-    auto best = best_swap(mesh, bad, std::span(edges).last(3));
-    for (int i = 0; i < 4; ++i)
-        keep_better(best, face_removal(mesh, {bad.cell, i}, {false, best ? best->worst_after : bound(bad)}));
-    return best;
 }
 
 /// Moves the vertex that makes the cell good enough at the least cost to the solution, as each cell at it that is
 /// still as it was has to be projected; or, if none does, makes it the best.
-std::optional<Remedy> Doctor::move(Tet t) const {
+std::optional<Operation> Operators::move(Tet t) const {
     struct Candidate {
         std::ptrdiff_t cost;
         Vertex vertex;
@@ -208,29 +164,29 @@ std::optional<Remedy> Doctor::move(Tet t) const {
     }
     std::ranges::sort(by_cost, {}, [](const Candidate& c) { return std::pair(c.cost, c.vertex); });
     Candidate* chosen = nullptr;
-    Place best{{}, std::numeric_limits<double>::infinity()};
+    Place best{{}, infinity};
     for (Candidate& candidate : by_cost) {
-        const Place place = better_place(mesh, candidate.vertex, candidate.around, 0.9 * options.good_enough);
+        const Place place = better_place(mesh, candidate.vertex, candidate.around, smoothing_goal * options.good_enough);
         if (place.x == mesh.position[candidate.vertex] || place.worst >= best.worst) continue;
         chosen = &candidate;
         best = place;
         if (best.worst <= options.good_enough) break;
     }
     if (!chosen) return std::nullopt;
-    Remedy remedy{Kind::move, {}, chosen->vertex, best.x};
-    remedy.cavity.removed = std::move(chosen->around);
-    return remedy;
+    Operation operation{Kind::move, {}, chosen->vertex, best.x};
+    operation.cavity.removed = std::move(chosen->around);
+    return operation;
 }
 
-bool Doctor::makes_long_edge(const Cavity& cavity, Vertex to) const {
+bool Operators::makes_long_edge(const Cavity& cavity, Vertex to) const {
     const Vec3 place = mesh.position[to];
-    const double longest = longest_after_collapse * target_size(at_time, place);
+    const double longest = longest_by_quality * target_size(at_time, place);
     return std::ranges::any_of(cavity.added, [&](const NewTet& t) {
         return std::ranges::any_of(t.vertices, [&](Vertex v) { return distance(mesh.position[v], place) > longest; });
     });
 }
 
-std::optional<Cavity> Doctor::collapse(const BadCell& bad) const {
+std::optional<Cavity> Operators::collapse(const BadCell& bad) const {
     std::optional<Cavity> best;
     std::vector<Tet> around;
     for (Vertex from : mesh.tets[bad.cell]) {
@@ -244,28 +200,32 @@ std::optional<Cavity> Doctor::collapse(const BadCell& bad) const {
     return best;
 }
 
-std::optional<Cavity> Doctor::split(const BadCell& bad) const {
+std::optional<Cavity> Operators::split(const BadCell& bad) const {
     std::optional<Cavity> best;
     Shell around;
-    for (const auto& [i, j] : tet_edges) {
-        const Edge e{mesh.tets[bad.cell][at(i)], mesh.tets[bad.cell][at(j)]};
+    for (std::size_t k = 0; k < tet_edges.size(); ++k) {
+        const Edge e = tet_edge(mesh, bad.cell, k);
         shell(mesh, e, bad.cell, around);
-        keep_better(best, edge_split(mesh, around, e, best ? best->worst_after : bound(bad)));
+        auto cavity = edge_split(mesh, around, e, best ? best->worst_after : bound(bad));
+        if (cavity && (!best || cavity->worst_after < best->worst_after)) best = std::move(cavity);
     }
     return best;
 }
 
-/// Carries the remedy out and notes it. Returns the cells that are new or have moved.
-std::vector<Tet> apply(Mesh& mesh, Remedy& remedy, Changes& changes) {
-    if (remedy.kind == Kind::move) {
-        mesh.position[remedy.moved] = remedy.place;
+/// Carries the operation out and notes it. Returns the cells that are new or have moved.
+std::vector<Tet> apply(Mesh& mesh, Operation& operation, Changes& changes) {
+    if (operation.kind == Kind::move) {
+        mesh.position[operation.moved] = operation.place;
         ++changes.moved;
-        changes.vertices.push_back(remedy.moved);
-        return std::move(remedy.cavity.removed);
+        changes.vertices.push_back(operation.moved);
+        return std::move(operation.cavity.removed);
     }
-    ++(remedy.kind == Kind::swap ? changes.swaps : remedy.kind == Kind::collapse ? changes.collapses : changes.splits);
+    int& count = operation.kind == Kind::swap       ? changes.swaps
+                 : operation.kind == Kind::collapse ? changes.collapses
+                                                    : changes.splits;
+    ++count;
     const auto known = static_cast<std::ptrdiff_t>(changes.cells.size());
-    carry_out(mesh, remedy.cavity, changes);
+    carry_out(mesh, operation.cavity, changes);
     return {changes.cells.begin() + known, changes.cells.end()};
 }
 
@@ -285,7 +245,7 @@ std::vector<BadCell> take_apart(const Mesh& mesh, std::vector<BadCell>& bad) {
 
 /// What improvement may do.
 struct Allowed {
-    Budget treatments{treatments_of_one}, splits{splits_of_one};
+    Budget treatments{least_treatments}, splits{least_splits};
 
     void add_for(std::size_t bad, const AdaptOptions& options) {
         treatments.add(options.treatments * static_cast<double>(bad));
@@ -308,27 +268,26 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
         const auto asked = take_apart(mesh, bad);
         allowed.treatments.take(static_cast<double>(asked.size()));
         changes.treated += static_cast<int>(asked.size());
-        const Doctor doctor{mesh, at_time, options, changed, !allowed.splits.spent()};
-        const Vertex next = next_vertex(mesh);
-        auto remedies = propose_all(asked.size(), [&](std::size_t i) { return doctor.remedy(asked[i]); }, options.watch);
+        const Operators operators{mesh, at_time, options, changed, !allowed.splits.spent()};
+        const auto ask = [&](std::size_t i) { return operators.first_that_helps(asked[i]); };
+        auto operations = propose_all(asked.size(), ask, options.watch);
         std::vector<Tet> again;
         Replaced replaced;
         std::size_t i = 0;
-        for (auto& [which, remedy] : remedies) {
+        for (auto& [which, operation] : operations) {
             for (; i < which; ++i) stuck.push_back(asked[i].cell);
             ++i;
-            if (replaced.outdates(remedy.cavity)) {
+            if (replaced.outdates(operation.cavity)) {
                 again.push_back(asked[which].cell);
                 continue;
             }
-            rename_inserted(remedy.cavity, next, mesh);
-            if (tangled && remedy.kind != Kind::move && !fits(mesh, remedy.cavity)) {
+            if (tangled && operation.kind != Kind::move && !fits(mesh, operation.cavity)) {
                 stuck.push_back(asked[which].cell);
                 continue;
             }
-            replaced.add(remedy.cavity);
-            if (remedy.kind == Kind::split) allowed.splits.take(1);
-            for (Tet t : apply(mesh, remedy, changes)) {
+            replaced.add(operation.cavity);
+            if (operation.kind == Kind::split) allowed.splits.take(1);
+            for (Tet t : apply(mesh, operation, changes)) {
                 changed.insert(t);
                 again.push_back(t);
             }
@@ -344,7 +303,7 @@ std::vector<Tet> treat(Mesh& mesh, std::vector<BadCell> bad, const Snapshot& at_
 void retriangulate(Mesh& mesh, const BadCell& bad, const Snapshot& at_time, const AdaptOptions& options,
                    Budget& budget, Changes& changes) {
     std::vector<Tet> cluster = {bad.cell};
-    const int rings = bad.ratio > far_from_good * options.good_enough ? 2 : 1;
+    const int rings = bad.ratio > two_rings_above * options.good_enough ? 2 : 1;
     for (int ring = 1; ring <= rings; ++ring) {
         cluster = with_ring(mesh, cluster);
         const auto cavity = cluster_remesh(mesh, cluster, at_time, options, budget);
@@ -372,11 +331,6 @@ bool retriangulate(Mesh& mesh, const std::vector<Tet>& stuck, const Snapshot& at
     return budget.spent();
 }
 
-int count_above(const Mesh& mesh, const std::vector<Tet>& cells, double ratio) {
-    return static_cast<int>(
-        std::ranges::count_if(cells, [&](Tet t) { return alive(mesh, t) && aspect_ratio(mesh, t) > ratio; }));
-}
-
 }  // namespace
 
 Changes& Changes::operator+=(const Changes& other) {
@@ -400,8 +354,8 @@ Changes& Changes::operator+=(const Changes& other) {
 }
 
 void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
-    for (std::size_t k = 0; k < cavity.inserted.size(); ++k) changes.vertices.push_back(next_vertex(mesh, k));
-    const auto added = replace_cells(mesh, cavity);
+    const auto [added, inserted] = replace_cells(mesh, cavity);
+    changes.vertices.insert(changes.vertices.end(), inserted.begin(), inserted.end());
     changes.cells.insert(changes.cells.end(), added.begin(), added.end());
     changes.removed.insert(changes.removed.end(), cavity.removed.begin(), cavity.removed.end());
     changes.cells_replaced += static_cast<int>(cavity.removed.size());
@@ -458,7 +412,7 @@ Changes improve(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time,
     }
     bool spent = allowed.treatments.spent();
     if (options.clusters) spent |= retriangulate(mesh, left, at_time, options, cells.size(), changes);
-    if (spent) changes.given_up += count_above(mesh, left, options.good_enough);
+    if (spent) changes.given_up += count_worse(mesh, left, options.good_enough);
     const std::vector<Tet> added(changes.cells.begin() + swapped, changes.cells.end());
     changes += swap_for_energy(mesh, added, options);
     return changes;

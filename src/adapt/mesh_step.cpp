@@ -1,5 +1,6 @@
 #include "adapt/mesh_step.h"
 
+#include "adapt/constants.h"
 #include "adapt/paper.h"
 #include "adapt/way.h"
 #include "base/checks.h"
@@ -16,17 +17,6 @@
 
 namespace kropla {
 namespace {
-
-constexpr int most_legs = 8;             // into which the motion of a step is cut
-constexpr double share_of_safe = 0.7;    // of the safe way that a leg takes
-constexpr double least_leg = 0.02;       // of what is left; a shorter leg means that the motion is stuck
-constexpr double trouble_in_sizes = 3;   // how far around a place of trouble is remeshed
-constexpr double least_jacobian = 0.1;   // [-] scaled, of a prism's corners
-constexpr std::size_t refusals_until_all_anew = 3;  // by the paper's method
-constexpr double cut_out_of_trouble = 50;           // by the same, AdaptOptions::cut_out
-constexpr double trouble_floor = 6;      // [-] R/r: worse cells are cut out there if they stop a second attempt
-constexpr int rings_of_trouble = 2;          // around such a cell, at most
-constexpr double harder = 0.92;          // there, cells must be better by this than elsewhere
 
 /// The vertices of a body's tets and of its layers' columns, in order.
 std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
@@ -103,12 +93,13 @@ void MeshStep::end_attempt() noexcept {
 void MeshStep::begin_step() {
     if (std::exchange(dropped_, false)) {
         current_ = before_ = reference_;
-        clear(zone_);
+        zone_ = {};
+        motion_ = {};
     }
     const auto replaced = replaced_.list();
     for (Mesh* mesh : {&current_, &before_}) copy_changed(*mesh, reference_, replaced, moved_);
     follow(zone_, current_, replaced_);
-    begin_motion(zone_);
+    begin_motion(motion_);
     replaced_.clear();
     moved_.clear();
     refined_.clear();
@@ -133,7 +124,7 @@ const Changes& MeshStep::refine() {
 Changes MeshStep::refine_by_size() {
     const Snapshot at_time = snapshot(domain_, time_);
     AdaptOptions options = options_;
-    options.good_enough = std::max(3.5, harder * options_.good_enough);
+    options.good_enough = std::max(least_good_enough, stricter * options_.good_enough);
     auto cells = cells_near(current_, trouble_, trouble_in_sizes, at_time);
     Changes changes = adapt_to_size(current_, cells, at_time, options);
     cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());
@@ -172,8 +163,8 @@ void MeshStep::move_boundary(double t) {
     stuck_ = turned_too_far();
     if (stuck_) return;
     statistics_.legs = 1;
-    place_boundary(current_, domain_, bodies_, time_, t, zone_, follow_);
-    write_places(zone_, current_);
+    place_boundary(current_, domain_, bodies_, time_, t, zone_, motion_, follow_);
+    write_places(motion_, current_);
     note_moved();
 }
 
@@ -191,7 +182,7 @@ void MeshStep::correct(std::span<const BodyPlace> places) {
 
 void MeshStep::optimise() {
     if (stuck_) return;
-    if (optimise_at(target_time_)) way_ = check_way(zone_, current_, before_.position, least_volume_kept);
+    if (optimise_placed()) way_ = check_way(motion_, current_, before_.position, least_volume_kept);
     if (!way_.arrived) move_in_legs();
 }
 
@@ -202,40 +193,42 @@ void MeshStep::move_in_legs() {
     for (int leg = 1; leg <= most_legs; ++leg) {
         heed(options_.watch);
         statistics_.legs = leg;
-        const MoveReport report = kropla::move_boundary(current_, domain_, bodies_, here, target_time_, zone_, follow_);
+        const auto move_to = [&](double t) {
+            return kropla::move_boundary(current_, domain_, bodies_, here, t, zone_, motion_, follow_);
+        };
+        const MoveReport report = move_to(target_time_);
         const double share = report.arrived ? 1 : share_of_safe * report.fraction;
         const double next = report.arrived ? target_time_ : here + share * (target_time_ - here);
         if (!report.arrived) {
             stuck_ = refused(report.limiting, "keeps the bodies from arriving", here - time_);
             if (share < least_leg) return;
-            if (!kropla::move_boundary(current_, domain_, bodies_, here, next, zone_, follow_).arrived) return;
+            if (!move_to(next).arrived) return;
         }
         note_moved();
-        if (!optimise_at(next)) return note_turned_over(here);
+        if (!optimise_placed()) return note_turned_over(here);
         here = next;
         if (!report.arrived) continue;
         stuck_.reset();
-        way_ = check_way(zone_, current_, before_.position, least_volume_kept);
+        way_ = check_way(motion_, current_, before_.position, least_volume_kept);
         return;
     }
 }
 
 /// The places that were moved have a cell that is turned over.
 void MeshStep::note_turned_over(double reached) {
-    const auto is_turned = [&](Tet t) { return !std::isfinite(zone_.ratio[t]); };
-    const auto cell = std::ranges::find_if(zone_.cells, is_turned);
-    const Tet limiting = cell == zone_.cells.end() ? zone_.cells.front() : *cell;
+    const auto is_turned = [&](Tet t) { return !std::isfinite(motion_.ratio[t]); };
+    const auto cell = std::ranges::find_if(motion_.cells, is_turned);
+    const Tet limiting = cell == motion_.cells.end() ? motion_.cells.front() : *cell;
     stuck_ = refused(limiting, "would be turned over", reached - time_);
 }
 
 /// Returns false if a cell is turned over.
-bool MeshStep::optimise_at(double t) {
-    find_sizes(zone_, snapshot(domain_, t));
-    const auto changes = options_.paper ? smooth_places(zone_, current_, options_)
-                                        : optimise_places(zone_, current_, options_);
+bool MeshStep::optimise_placed() {
+    const auto changes = options_.paper ? smooth_places(zone_, motion_, current_, options_)
+                                        : optimise_places(zone_, motion_, current_, options_);
     if (!changes) return false;
     statistics_.optimised += *changes;
-    write_places(zone_, current_);
+    write_places(motion_, current_);
     return true;
 }
 
@@ -279,7 +272,8 @@ std::optional<Refusal> MeshStep::turned_on_its_way() const {
     const double dt = target_time_ - time_;
     if (!way_.arrived) return refused(way_.limiting, fault, way_.fraction * dt);
     for (Tet t : at_inner_shells_)
-        if (const double safe = safe_fraction(before_, current_, {&t, 1}, least_volume_kept); safe < 1)
+        if (const double safe = safe_fraction(current_, {&t, 1}, before_.position, current_.position, least_volume_kept);
+            safe < 1)
             return refused(t, fault, safe * dt);
     for (const Prism& prism : all_prisms(current_)) {
         const auto from = prism_corners(before_, prism);
@@ -313,7 +307,7 @@ std::optional<Refusal> MeshStep::worst_cell() const {
         worst = ratio;
         limiting = t;
     };
-    for (Tet t : zone_.cells) look_at(t, zone_.ratio[t]);
+    for (Tet t : motion_.cells) look_at(t, motion_.ratio[t]);
     for (Tet t : at_inner_shells_) look_at(t, aspect_ratio(current_, t));
     for (Tet t : refined_)
         if (alive(current_, t)) look_at(t, aspect_ratio(current_, t));
@@ -356,7 +350,7 @@ Changes MeshStep::remesh_by_paper() {
 
 Changes MeshStep::remesh_by_size(const AdaptOptions& options) {
     const Snapshot at_time = snapshot(domain_, target_time_);
-    Changes changes = adapt_to_size(current_, zone_, at_time, options);
+    Changes changes = adapt_to_size(current_, zone_, motion_, at_time, options);
     changes += swap_for_energy(current_, cells_above(options.swap_above), options);
     std::vector<Tet> poor = cells_above(options.good_enough);
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
@@ -379,7 +373,7 @@ const Changes& MeshStep::remesh() {
         changes = remesh_by_size(options);
     }
     note_replaced(changes);
-    statistics_.cells_touched = static_cast<int>(zone_.cells.size());
+    statistics_.cells_touched = static_cast<int>(motion_.cells.size());
     return changes;
 }
 
@@ -396,13 +390,13 @@ void MeshStep::accept() {
 /// The cells that the step has made worse than `ratio`, or has left so.
 std::vector<Tet> MeshStep::cells_above(double ratio) const {
     std::vector<Tet> cells;
-    std::ranges::copy_if(zone_.cells, std::back_inserter(cells), [&](Tet t) { return zone_.ratio[t] > ratio; });
+    std::ranges::copy_if(motion_.cells, std::back_inserter(cells), [&](Tet t) { return motion_.ratio[t] > ratio; });
     return cells;
 }
 
 void MeshStep::note_moved() {
-    moved_.insert(moved_.end(), zone_.bodies.begin(), zone_.bodies.end());
-    moved_.insert(moved_.end(), zone_.vertices.begin(), zone_.vertices.end());
+    moved_.insert(moved_.end(), motion_.bodies.begin(), motion_.bodies.end());
+    moved_.insert(moved_.end(), motion_.vertices.begin(), motion_.vertices.end());
 }
 
 void MeshStep::note_replaced(const Changes& changes) {

@@ -78,7 +78,7 @@ private:
     Changes remesh_by_paper();
     void move_in_legs();
     void note_turned_over(double reached);
-    bool optimise_at(double t);
+    bool optimise_placed();
     [[nodiscard]] std::vector<Tet> cells_above(double ratio) const;
     void note_moved();
     void note_replaced(const Changes& changes);
@@ -93,7 +93,8 @@ private:
     std::vector<Tet> at_inner_shells_;         // cells of bodies that do not move rigidly: at the shells of inner layers
     Mesh reference_, before_, current_;
     double time_, target_time_;
-    Zone zone_;                      // what the step moves
+    Zone zone_;                      // what the step moves,
+    ZoneMotion motion_;              // and where to
     MoveReport way_;                 // from before() to current()
     std::vector<Tet> refined_;       // cells that are new in the step
     IndexSet<Tet> replaced_;         // in which slots the three meshes may differ,

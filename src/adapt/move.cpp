@@ -1,10 +1,11 @@
 // Motion of bodies through the mesh. Bodies move rigidly; their displacement is spread into the surroundings
 // by weights that fall with the distance, as in [Luke, Collins, Blades 2012], "A fast mesh deformation method
 // using explicit interpolation". Here a body's displacement is that of its rigid motion at the vertex, and
-// how much of it is felt follows the cells' size, so that cells stream past the body instead of being
+// the share of it that a vertex takes follows the cells' size, so that cells stream past the body instead of being
 // squeezed and torn; vertices on the faces of the box slide along; and a body reaches no farther than a few
 // of its own sizes.
 
+#include "adapt/constants.h"
 #include "base/for_all.h"
 #include "adapt/zone.h"
 #include "domain/layer_room.h"
@@ -18,12 +19,6 @@
 
 namespace kropla {
 namespace {
-
-constexpr double reach_in_body_sizes = 6.0;    // how far a displacement is felt
-constexpr double most_reach = 10.0;             // in a narrow box, where that is no more work
-constexpr double least_reach_in_sizes = 10.0;   // and at least, in surface sizes
-
-constexpr std::size_t too_much = 2;  // of a zone, in what is in reach: then the rest is left out
 
 /// The motion of one body over a step.
 struct Travel {
@@ -68,17 +63,16 @@ double volume_within(const Box& box, const Vec3& x, double reach) {
     return volume;
 }
 
-/// How far a body's displacement is felt. The farther, the less each cell is strained; so where walls cut away a part
+/// How far a body's displacement goes. The farther, the less each cell is strained; so where walls cut away a part
 /// of what is in reach, it goes farther, to about as many cells.
 double reach_of(const Shape& shape, const Domain& domain) {
-    constexpr double step = 0.25;
     const double size = outer_radius(shape);
     const double whole = std::pow(2 * (1 + reach_in_body_sizes) * size, 3);
     const auto volume_in_reach = [&](double sizes) {
         return volume_within(domain.box, shape.centre, (1 + sizes) * size);
     };
     double sizes = reach_in_body_sizes;
-    while (sizes < most_reach && volume_in_reach(sizes + step) <= whole) sizes += step;
+    while (sizes < most_reach && volume_in_reach(sizes + reach_step) <= whole) sizes += reach_step;
     return std::max(sizes * size, least_reach_in_sizes * domain.size.surface);
 }
 
@@ -110,7 +104,7 @@ std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
 /// The share of a body's motion that the mesh takes part in at a distance from it. Seen from the body, cells
 /// stream past; with their size h rising outwards, as many vertices enter any part as leave it if the stream
 /// is as h^3.
-double felt(const SizeField& size, double distance, double reach) {
+double displacement_share(const SizeField& size, double distance, double reach) {
     if (distance >= reach) return 0;
     const auto volume_at = [&](double d) {
         const double h = size.surface + size.growth * d;
@@ -137,7 +131,7 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
     for (std::size_t i = 0; i < travels.size(); ++i) {
         const double d = distance_to_body(at, i, x);
         if (d == 0) return travels[i].displacement(x);
-        const double share = felt(at.size, d, travels[i].reach);
+        const double share = displacement_share(at.size, d, travels[i].reach);
         total += 1 / (d * d);
         sum += share / (d * d) * travels[i].displacement(x);
         least = std::min(least, d);
@@ -157,21 +151,21 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
 /// Puts the bodies' vertices where they go: rigidly with the body, but for the columns of layers, which stand on
 /// their wall at the end as high as the gaps there let them.
 void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
-                  std::span<const std::vector<Vertex>> bodies, Zone& zone) {
-    zone.bodies.clear();
+                  std::span<const std::vector<Vertex>> bodies, ZoneMotion& motion) {
+    motion.bodies.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i)
         for (Vertex v : bodies[i]) {
-            zone.bodies.push_back(v);
-            zone.moves[v] = Zone::with_body;
-            zone.place[v] = travels[i].taken_along(mesh.position[v]);
+            motion.bodies.push_back(v);
+            motion.moves[v] = ZoneMotion::with_body;
+            motion.place[v] = travels[i].taken_along(mesh.position[v]);
         }
     for (const PrismLayer& layer : mesh.layers) {
         std::vector<Vec3> wall;
         for (int column = 0; column < count_columns(layer); ++column)
-            wall.push_back(zone.place[column_vertex(layer, column, 0)]);
+            wall.push_back(motion.place[column_vertex(layer, column, 0)]);
         const auto places = column_places(layer, wall, at_end);
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (i % static_cast<std::size_t>(layer.count + 1) != 0) zone.place[layer.columns[i]] = places[i];
+            if (i % as_size(layer.count + 1) != 0) motion.place[layer.columns[i]] = places[i];
     }
 }
 
@@ -233,40 +227,48 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<cons
 
 /// Gathers what is in reach of the bodies, and where the vertices are to go.
 void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
-                    std::span<const std::vector<Vertex>> bodies, Follow surroundings, Zone& zone) {
+                    std::span<const std::vector<Vertex>> bodies, Follow surroundings, Zone& zone, ZoneMotion& motion) {
     reach_out(mesh, travels, bodies, zone);
-    place_bodies(mesh, at_end, travels, bodies, zone);
-    zone.vertices = zone.has.list();
-    for_all(zone.vertices.size(), [&](std::size_t i) {
-        const Vertex v = zone.vertices[i];
-        if (zone.moves[v] == Zone::with_body) return;
-        zone.place[v] = mesh.position[v];
+    fit(motion, mesh);
+    place_bodies(mesh, at_end, travels, bodies, motion);
+    motion.vertices = zone.has.list();
+    for_all(motion.vertices.size(), [&](std::size_t i) {
+        const Vertex v = motion.vertices[i];
+        if (motion.moves[v] == ZoneMotion::with_body) return;
+        motion.place[v] = mesh.position[v];
         if (out_of_reach(travels, mesh.position[v])) {
-            if (zone.moves[v] == 0 && !keeps_its_size(travels, mesh.position[v])) zone.moves[v] = Zone::by_size;
+            if (motion.moves[v] == 0 && !keeps_its_size(travels, mesh.position[v]))
+                motion.moves[v] = ZoneMotion::by_size;
             return;
         }
-        zone.moves[v] = Zone::by_itself;
+        motion.moves[v] = ZoneMotion::by_itself;
         if (surroundings == Follow::rest) return;
-        zone.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, v));
+        motion.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, motion, v));
     });
-    list_cells(zone, mesh);
-    if (zone.holds.size() <= too_much * (zone.cells.size() + zone.beyond.size())) return;
-    shrink(zone, mesh);
-    zone.vertices = zone.has.list();
+    list_cells(zone, motion, mesh);
+    if (zone.holds.size() > most_unused * (motion.cells.size() + motion.beyond.size())) {
+        IndexSet<Tet> stay;
+        for (Tet t : motion.cells) stay.insert(t);
+        for (Tet t : motion.beyond) stay.insert(t);
+        shrink(zone, mesh, stay);
+        motion.vertices = zone.has.list();
+    }
+    find_sizes(motion, at_end);
 }
 
 }  // namespace
 
 void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone, Follow follow) {
-    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, follow, zone);
+                    double t1, Zone& zone, ZoneMotion& motion, Follow follow) {
+    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, follow, zone,
+                   motion);
 }
 
 MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone, Follow follow) {
-    place_boundary(mesh, domain, bodies, t0, t1, zone, follow);
-    const MoveReport report = check_way(zone, mesh, mesh.position, least_volume_kept);
-    if (report.arrived) write_places(zone, mesh);
+                         double t1, Zone& zone, ZoneMotion& motion, Follow follow) {
+    place_boundary(mesh, domain, bodies, t0, t1, zone, motion, follow);
+    const MoveReport report = check_way(motion, mesh, mesh.position, least_volume_kept);
+    if (report.arrived) write_places(motion, mesh);
     return report;
 }
 

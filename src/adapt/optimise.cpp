@@ -7,6 +7,7 @@
 // tessellation of [Chen, Holst 2011], "Efficient mesh optimization schemes based on Optimal Delaunay
 // Triangulations".
 
+#include "adapt/constants.h"
 #include "base/for_all.h"
 #include "adapt/zone.h"
 
@@ -20,53 +21,45 @@
 namespace kropla {
 namespace {
 
-constexpr int most_retreats = 5;        // vertices that are taken back may spoil the cells of others
-constexpr int most_passes = 4;          // over the vertices of bad cells
-constexpr double near_the_floor = 0.8;  // of it: cells above are put right by moving vertices
-
 /// Returns whether all cells had a volume; else nothing is moved.
-bool equalise_volumes(Zone& zone, const Mesh& mesh) {
+bool equalise_volumes(const Zone& zone, ZoneMotion& motion, const Mesh& mesh) {
     std::atomic<bool> valid = true;
-    for_all(zone.cells.size(), [&](std::size_t c) {
-        const Tet t = zone.cells[c];
+    for_all(motion.cells.size(), [&](std::size_t c) {
+        const Tet t = motion.cells[c];
         const auto& v = mesh.tets[t];
-        const Vec3 &p = zone.place[v[0]], &q = zone.place[v[1]], &r = zone.place[v[2]], &s = zone.place[v[3]];
-        const double size = zone.size[v[0]] + zone.size[v[1]] + zone.size[v[2]] + zone.size[v[3]];
+        const Vec3 &p = motion.place[v[0]], &q = motion.place[v[1]], &r = motion.place[v[2]], &s = motion.place[v[3]];
+        const double size = motion.size[v[0]] + motion.size[v[1]] + motion.size[v[2]] + motion.size[v[3]];
         const double weight = determinant(q - p, r - p, s - p) / (size * size * size);
-        zone.pull[t] = {weight / 4 * (p + q + r + s), weight};
+        motion.centroid[t] = {weight / 4 * (p + q + r + s), weight};
         if (!(weight > 0)) valid = false;
     });
     if (!valid) return false;
-    for_all(zone.vertices.size(), [&](std::size_t i) {
-        const Vertex v = zone.vertices[i];
-        const Freedom free = freedom(zone, v);
+    for_all(motion.vertices.size(), [&](std::size_t i) {
+        const Vertex v = motion.vertices[i];
+        const Freedom free = freedom(zone, motion, v);
         if (free.none()) return;
-        Pull sum{};
+        WeightedCentroid sum{};
         for (Tet t : zone.ball[v]) {
-            sum.moment += zone.pull[t].moment;
-            sum.weight += zone.pull[t].weight;
+            sum.moment += motion.centroid[t].moment;
+            sum.weight += motion.centroid[t].weight;
         }
-        zone.place[v] += restricted(sum.moment / sum.weight - zone.place[v], free);
+        motion.place[v] += restricted(sum.moment / sum.weight - motion.place[v], free);
     });
     return true;
 }
 
-void measure_ball(Zone& zone, const Mesh& mesh, Vertex v) {
-    for (Tet t : zone.ball[v]) zone.ratio[t] = aspect_ratio(zone, mesh, t);
-}
-
 /// Takes the vertices of cells worse than `above` back to `places`, by number of `vertices`. Returns whether there
 /// were any.
-bool retreat(Zone& zone, const Mesh& mesh, const std::vector<Vec3>& places, double above) {
+bool retreat(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, const std::vector<Vec3>& places, double above) {
     std::vector<Vertex> back;
-    for (Vertex v : vertices_of_worse(zone, mesh, above)) {
-        const auto number = std::ranges::lower_bound(zone.vertices, v) - zone.vertices.begin();
+    for (Vertex v : vertices_of_worse(zone, motion, mesh, above)) {
+        const auto number = std::ranges::lower_bound(motion.vertices, v) - motion.vertices.begin();
         const Vec3& place = places[static_cast<std::size_t>(number)];
-        if (zone.place[v] == place) continue;
-        zone.place[v] = place;
+        if (motion.place[v] == place) continue;
+        motion.place[v] = place;
         back.push_back(v);
     }
-    for (Vertex v : back) measure_ball(zone, mesh, v);
+    for (Vertex v : back) measure_ball(zone, motion, mesh, v);
     return !back.empty();
 }
 
@@ -87,21 +80,21 @@ std::vector<Vertex> take_apart(const Zone& zone, std::vector<Vertex>& vertices) 
 
 /// Moves the vertices of cells worse than `above`, each once, to their best places: at once those that share no
 /// cell.
-int optimise_worst(Zone& zone, const Mesh& mesh, double above, const Watch* watch) {
-    const auto is_bad = [&](Tet t) { return zone.ratio[t] > above; };
+int optimise_worst(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, double above, const Watch* watch) {
+    const auto is_bad = [&](Tet t) { return motion.ratio[t] > above; };
     std::atomic<int> moved = 0;
-    auto vertices = vertices_of_worse(zone, mesh, above);
+    auto vertices = vertices_of_worse(zone, motion, mesh, above);
     while (!vertices.empty()) {
         heed(watch);
         const auto apart = take_apart(zone, vertices);
         for_all(apart.size(), [&](std::size_t i) {
             std::vector<StarFacet> star;
-            star_of_ball(zone, mesh, apart[i], star);
-            Vec3& place = zone.place[apart[i]];
-            const Place best = best_place(star, place, freedom(zone, apart[i]), 0.9 * above);
+            star_of_ball(mesh, motion.place, apart[i], zone.ball[apart[i]], star);
+            Vec3& place = motion.place[apart[i]];
+            const Place best = best_place(star, place, freedom(zone, motion, apart[i]), smoothing_goal * above);
             if (best.x == place) return;
             place = best.x;
-            measure_ball(zone, mesh, apart[i]);
+            measure_ball(zone, motion, mesh, apart[i]);
             ++moved;
         }, 16);
         std::erase_if(vertices, [&](Vertex v) { return std::ranges::none_of(zone.ball[v], is_bad); });
@@ -111,40 +104,40 @@ int optimise_worst(Zone& zone, const Mesh& mesh, double above, const Watch* watc
 
 }  // namespace
 
-void measure(Zone& zone, const Mesh& mesh) {
-    const std::size_t count = zone.cells.size();
+void measure_ball(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, Vertex v) {
+    for (Tet t : zone.ball[v]) motion.ratio[t] = aspect_ratio(motion, mesh, t);
+}
+
+void measure(ZoneMotion& motion, const Mesh& mesh) {
+    const std::size_t count = motion.cells.size();
     for_all((count + 3) / 4, [&](std::size_t four) {
         const std::size_t first = 4 * four;
-        Four ratios;
-        tet_aspect_ratios(four_cells(zone.cells, mesh, first, zone.place), ratios);
-        for (std::size_t i = 0; i < 4 && first + i < count; ++i) zone.ratio[zone.cells[first + i]] = ratios[i];
+        const auto ratios = tet_aspect_ratios(four_cells(motion.cells, mesh, first, motion.place));
+        for (std::size_t i = 0; i < 4 && first + i < count; ++i) motion.ratio[motion.cells[first + i]] = ratios[i];
     });
 }
 
-std::optional<Changes> optimise_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
-    std::vector<Vec3> moved;
-    for (Vertex v : zone.vertices) moved.push_back(zone.place[v]);
-    const auto take_back = [&] {
-        for (std::size_t i = 0; i < moved.size(); ++i) zone.place[zone.vertices[i]] = moved[i];
-    };
+std::optional<Changes> optimise_places(const Zone& zone, ZoneMotion& motion, const Mesh& mesh,
+                                       const AdaptOptions& options) {
+    const auto moved = places(motion);
     for (int i = 0; i < options.relaxations; ++i) {
         heed(options.watch);
-        if (!equalise_volumes(zone, mesh)) {
-            take_back();
+        if (!equalise_volumes(zone, motion, mesh)) {
+            put_back(motion, moved);
             break;
         }
     }
-    measure(zone, mesh);
+    measure(motion, mesh);
     const double spoilt = std::max(options.good_enough, near_the_floor * options.floor);
-    for (int i = 0; i < most_retreats && retreat(zone, mesh, moved, spoilt); ++i) heed(options.watch);
-    if (std::ranges::any_of(zone.cells, [&](Tet t) { return !std::isfinite(zone.ratio[t]); })) {
-        take_back();
+    for (int i = 0; i < most_retreats && retreat(zone, motion, mesh, moved, spoilt); ++i) heed(options.watch);
+    if (std::ranges::any_of(motion.cells, [&](Tet t) { return !std::isfinite(motion.ratio[t]); })) {
+        put_back(motion, moved);
         return std::nullopt;
     }
     Changes changes;
     changes.smoothing_sweeps = options.relaxations;
     for (int i = 0; i < most_passes; ++i) {
-        const int more = optimise_worst(zone, mesh, spoilt, options.watch);
+        const int more = optimise_worst(zone, motion, mesh, spoilt, options.watch);
         changes.moved += more;
         if (more == 0) break;
     }
@@ -152,16 +145,14 @@ std::optional<Changes> optimise_places(Zone& zone, const Mesh& mesh, const Adapt
 }
 
 Changes optimise_places(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {
-    Zone zone;
-    gather(zone, mesh, cells);
-    for (Vertex v : zone.vertices) zone.size[v] = 1;
+    auto [zone, motion] = movable(mesh, cells);
     Changes changes;
-    if (!optimise_places(zone, mesh, options)) return changes;
-    for (Vertex v : zone.vertices)
-        if (zone.place[v] != mesh.position[v]) changes.vertices.push_back(v);
+    if (!optimise_places(zone, motion, mesh, options)) return changes;
+    for (Vertex v : motion.vertices)
+        if (motion.place[v] != mesh.position[v]) changes.vertices.push_back(v);
     changes.moved = static_cast<int>(changes.vertices.size());
     changes.smoothing_sweeps = options.relaxations;
-    write_places(zone, mesh);
+    write_places(motion, mesh);
     return changes;
 }
 

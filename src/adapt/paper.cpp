@@ -8,103 +8,68 @@
 
 #include "adapt/paper.h"
 
+#include "adapt/constants.h"
+#include "adapt/propose.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace kropla {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_gain = 1e-3;  // [-] of R/r, by a swap
-constexpr int rings_to_last = 2;     // around a bad cell: the small clusters, which are to be better than they must
-
-Vec3 laplacian_place(const Zone& zone, const Mesh& mesh, Vertex v, const LaplaceWeights& weights) {
+Vec3 laplacian_place(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh, Vertex v,
+                     const LaplaceWeights& weights) {
     std::vector<Vertex> around;
     for (Tet t : zone.ball[v])
         std::ranges::copy_if(mesh.tets[t], std::back_inserter(around), [v](Vertex w) { return w != v; });
     std::ranges::sort(around);
     around.erase(std::unique(around.begin(), around.end()), around.end());
     std::vector<Vec3> places;
-    for (Vertex w : around) places.push_back(zone.place[w]);
-    return zone.place[v] + restricted(laplacian_place(places, weights) - zone.place[v], freedom(zone, v));
+    for (Vertex w : around) places.push_back(motion.place[w]);
+    return motion.place[v] + restricted(laplacian_place(places, weights) - motion.place[v], freedom(zone, motion, v));
 }
 
 /// One sweep, each vertex seeing the new places of those before it; cells may turn over. Ratios are then to be measured.
-void equalise_volumes(Zone& zone, const Mesh& mesh, std::span<const Vertex> vertices) {
-    for (Vertex v : vertices) zone.place[v] = laplacian_place(zone, mesh, v, {.x1 = 0, .x2 = 1});
+void equalise_volumes(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, std::span<const Vertex> vertices) {
+    for (Vertex v : vertices) motion.place[v] = laplacian_place(zone, motion, mesh, v, {.x1 = 0, .x2 = 1});
 }
 
 /// One sweep of moves that do not make the worst cell of the ball worse. Returns how many.
-int smooth_for_quality(Zone& zone, const Mesh& mesh, std::span<const Vertex> vertices, const LaplaceWeights& weights) {
+int smooth_for_quality(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, std::span<const Vertex> vertices,
+                       const LaplaceWeights& weights) {
     int moved = 0;
     std::vector<StarFacet> star;
     for (Vertex v : vertices) {
-        const Vec3 place = laplacian_place(zone, mesh, v, weights);
-        star_of_ball(zone, mesh, v, star);
-        const double worst = worst_in_star(star, zone.place[v], infinity);
-        if (place == zone.place[v] || worst_in_star(star, place, worst) > worst) continue;
-        zone.place[v] = place;
-        for (Tet t : zone.ball[v]) zone.ratio[t] = aspect_ratio(zone, mesh, t);
+        const Vec3 place = laplacian_place(zone, motion, mesh, v, weights);
+        star_of_ball(mesh, motion.place, v, zone.ball[v], star);
+        const double worst = worst_in_star(star, motion.place[v], infinity);
+        if (place == motion.place[v] || worst_in_star(star, place, worst) > worst) continue;
+        motion.place[v] = place;
+        measure_ball(zone, motion, mesh, v);
         ++moved;
     }
     return moved;
 }
 
-/// Where the zone's vertices are, and how good that is.
-struct Places {
-    std::vector<Vec3> of_vertices;
-    double worst;
-};
-
-Places places(const Zone& zone, double worst) {
-    Places now{{}, worst};
-    for (Vertex v : zone.vertices) now.of_vertices.push_back(zone.place[v]);
-    return now;
-}
-
-void put_back(Zone& zone, const Mesh& mesh, const Places& then) {
-    for (std::size_t i = 0; i < zone.vertices.size(); ++i) zone.place[zone.vertices[i]] = then.of_vertices[i];
-    measure(zone, mesh);
-}
-
-double worst_ratio(const Zone& zone) {
+double worst_ratio(const ZoneMotion& motion) {
     double worst = 0;
-    for (Tet t : zone.cells) worst = std::max(worst, zone.ratio[t]);
+    for (Tet t : motion.cells) worst = std::max(worst, motion.ratio[t]);
     return worst;
 }
 
-/// The best swap of those that take an edge or a facet of the cell away, if what it makes is better than the cell.
-std::optional<Cavity> best_swap(const Mesh& mesh, Tet t) {
-    double bound = (1 - least_gain) * aspect_ratio(mesh, t);
-    std::optional<Cavity> best;
-    const auto look_at = [&](std::optional<Cavity> cavity) {
-        if (!cavity || cavity->worst_after >= bound) return;
-        bound = cavity->worst_after;
-        best = std::move(cavity);
-    };
-    const auto& v = mesh.tets[t];
-    for (const auto& [i, j] : tet_edges) {
-        const Edge edge{v[static_cast<std::size_t>(i)], v[static_cast<std::size_t>(j)]};
-        look_at(edge_removal(mesh, shell(mesh, edge, t), edge, {false, bound}));
-    }
-    for (int i = 0; i < 4; ++i) look_at(face_removal(mesh, {t, i}, {false, bound}));
-    return best;
-}
-
-bool is_worse_than(const Mesh& mesh, Tet t, double above) { return alive(mesh, t) && aspect_ratio(mesh, t) > above; }
-
 /// Swaps cells worse than `above` away, and those that replace them.
 Changes swap_worse(Mesh& mesh, std::span<const Tet> cells, double above, const Watch* watch) {
+    constexpr std::array<std::size_t, 6> all_edges = {0, 1, 2, 3, 4, 5};
     Changes changes;
     std::vector<Tet> bad(cells.begin(), cells.end());
     for (std::size_t i = 0; i < bad.size(); ++i) {
-        if (!is_worse_than(mesh, bad[i], above)) continue;
+        if (!is_worse(mesh, bad[i], above)) continue;
         heed(watch);
-        const auto cavity = best_swap(mesh, bad[i]);
+        const double bound = (1 - least_gain) * aspect_ratio(mesh, bad[i]);
+        const auto cavity = best_swap(mesh, bad[i], all_edges, true, bound);
         if (!cavity) continue;
         const auto known = static_cast<std::ptrdiff_t>(changes.cells.size());
         carry_out(mesh, *cavity, changes);
@@ -120,31 +85,39 @@ double about_the_limit(const AdaptOptions& options) {
     return std::min(options.floor, std::max(options.paper->about * options.floor, options.good_enough));
 }
 
-std::optional<Changes> smooth_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options) {
+std::optional<Changes> smooth_places(const Zone& zone, ZoneMotion& motion, const Mesh& mesh,
+                                     const AdaptOptions& options) {
     const PaperMethod& paper = *options.paper;
     const double good = std::max(paper.much_less * options.floor, options.swap_above);
     const double about_limit = about_the_limit(options);
     Changes changes;
-    measure(zone, mesh);
-    double worst = worst_ratio(zone);
-    Places best = places(zone, worst);
+    measure(motion, mesh);
+    double worst = worst_ratio(motion);
+    double least_worst = worst;
+    auto best = places(motion);
     while (worst > good && changes.smoothing_sweeps < paper.sweeps) {
         heed(options.watch);
-        const auto vertices = vertices_of_worse(zone, mesh, good);
+        const auto vertices = vertices_of_worse(zone, motion, mesh, good);
         if (worst > about_limit) {
-            equalise_volumes(zone, mesh, vertices);
-            measure(zone, mesh);
+            equalise_volumes(zone, motion, mesh, vertices);
+            measure(motion, mesh);
             ++changes.smoothing_sweeps;
         }
-        const int moved = smooth_for_quality(zone, mesh, vertices, paper.weights);
+        const int moved = smooth_for_quality(zone, motion, mesh, vertices, paper.weights);
         ++changes.smoothing_sweeps;
         changes.moved += moved;
-        worst = worst_ratio(zone);
-        if (worst <= best.worst) best = places(zone, worst);
+        worst = worst_ratio(motion);
+        if (worst <= least_worst) {
+            least_worst = worst;
+            best = places(motion);
+        }
         if (moved == 0) break;
     }
-    if (worst > best.worst) put_back(zone, mesh, best);
-    if (!std::isfinite(best.worst)) return std::nullopt;
+    if (worst > least_worst) {
+        put_back(motion, best);
+        measure(motion, mesh);
+    }
+    if (!std::isfinite(least_worst)) return std::nullopt;
     return changes;
 }
 
@@ -153,10 +126,10 @@ Changes remesh_clusters(Mesh& mesh, std::span<const Tet> cells, double above, co
     Changes changes = swap_worse(mesh, cells, options.swap_above, options.watch);
     std::vector<Tet> poor(cells.begin(), cells.end());
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
-    std::erase_if(poor, [&](Tet t) { return !is_worse_than(mesh, t, above); });
+    std::erase_if(poor, [&](Tet t) { return !is_worse(mesh, t, above); });
     AdaptOptions well = options;  // so that it lasts, where a small cluster does that
     well.floor = std::min(above, std::max(options.paper->remeshed * options.floor, options.good_enough));
-    well.largest_ring = rings_to_last;
+    well.largest_ring = lasting_rings;
     well.whole_region = false;
     changes += repair(mesh, poor, at_time, well);
     AdaptOptions barely = options;

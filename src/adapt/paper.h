@@ -9,7 +9,8 @@ namespace kropla {
 /// As optimise_places (2.4): sweeps of the weighted Laplacian over the vertices of cells that are not good, each move
 /// taken only if the worst aspect ratio of its ball does not get worse; and where a cell is about the limit, a sweep that
 /// equalises volumes before (the paper's Fig. 5).
-[[nodiscard]] std::optional<Changes> smooth_places(Zone& zone, const Mesh& mesh, const AdaptOptions& options);
+[[nodiscard]] std::optional<Changes> smooth_places(const Zone& zone, ZoneMotion& motion, const Mesh& mesh,
+                                                  const AdaptOptions& options);
 
 /// [-] R/r: cells above are "about ten or more".
 [[nodiscard]] double about_the_limit(const AdaptOptions& options);

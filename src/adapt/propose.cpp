@@ -10,8 +10,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// How often a facet stands in the cells removed and added, and whether it has a patch where it is on the boundary.
 struct Uses {
     int removed = 0, added = 0;
@@ -22,22 +20,21 @@ using FacetUses = std::map<std::array<Vertex, 3>, Uses>;
 
 FacetUses facet_uses(const Mesh& mesh, const Cavity& cavity) {
     FacetUses uses;
-    const auto of = [&](const std::array<Vertex, 4>& v, std::size_t corner) -> Uses& {
-        const auto& [i, j, k] = tet_facets[corner];
-        std::array<Vertex, 3> facet = {v[at(i)], v[at(j)], v[at(k)]};
+    const auto of = [&](const std::array<Vertex, 4>& v, int corner) -> Uses& {
+        auto facet = facet_vertices(v, corner);
         std::ranges::sort(facet);
         return uses[facet];
     };
-    for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (int corner = 0; corner < 4; ++corner) {
         for (Tet t : cavity.removed) {
             Uses& facet = of(mesh.tets[t], corner);
             ++facet.removed;
-            facet.bounds_removed |= !mesh.neighbour[t][corner].exists();
+            facet.bounds_removed |= !mesh.neighbour[t][as_size(corner)].exists();
         }
         for (const NewTet& t : cavity.added) {
             Uses& facet = of(t.vertices, corner);
             ++facet.added;
-            facet.bounds_added |= t.patch[corner].exists();
+            facet.bounds_added |= t.patch[as_size(corner)].exists();
         }
     }
     return uses;
@@ -50,7 +47,7 @@ bool closes(const Uses& facet) {
 
 /// Has a cell that is not removed all of these vertices?
 bool stands_elsewhere(const Mesh& mesh, std::span<const Vertex> vertices, const std::set<Tet>& removed) {
-    const auto is_known = [&](Vertex v) { return at(v.value) < mesh.position.size() && alive(mesh, v); };
+    const auto is_known = [&](Vertex v) { return v.exists() && alive(mesh, v); };
     if (!std::ranges::all_of(vertices, is_known)) return false;
     const auto around = ball(mesh, vertices.front());
     return std::ranges::any_of(around, [&](Tet t) {
@@ -60,6 +57,29 @@ bool stands_elsewhere(const Mesh& mesh, std::span<const Vertex> vertices, const 
 }
 
 }  // namespace
+
+std::optional<Cavity> best_swap(const Mesh& mesh, Tet t, std::span<const std::size_t> edges, bool facets, double bound) {
+    std::optional<Cavity> best;
+    Shell around;
+    const auto keep_better = [&](std::optional<Cavity> cavity) {
+        if (!cavity || cavity->worst_after >= bound) return;
+        bound = cavity->worst_after;
+        best = std::move(cavity);
+    };
+    for (std::size_t k : edges) {
+        const Edge edge = tet_edge(mesh, t, k);
+        shell(mesh, edge, t, around);
+        keep_better(edge_removal(mesh, around, edge, {false, bound}));
+    }
+    for (int i = 0; facets && i < 4; ++i) keep_better(face_removal(mesh, {t, i}, {false, bound}));
+    return best;
+}
+
+bool is_worse(const Mesh& mesh, Tet t, double than) { return alive(mesh, t) && aspect_ratio(mesh, t) > than; }
+
+int count_worse(const Mesh& mesh, std::span<const Tet> cells, double than) {
+    return static_cast<int>(std::ranges::count_if(cells, [&](Tet t) { return is_worse(mesh, t, than); }));
+}
 
 bool is_tangled(const Mesh& mesh, std::span<const Tet> cells) {
     return std::ranges::any_of(cells, [&](Tet t) { return alive(mesh, t) && !std::isfinite(aspect_ratio(mesh, t)); });
@@ -84,12 +104,6 @@ bool fits(const Mesh& mesh, const Cavity& cavity) {
             if (!edges.contains(edge) && stands_elsewhere(mesh, edge, removed)) return false;
     }
     return !cavity.added.empty();
-}
-
-void rename_inserted(Cavity& cavity, Vertex then, const Mesh& now) {
-    if (cavity.inserted.empty()) return;
-    const Vertex name = next_vertex(now);
-    for (NewTet& tet : cavity.added) std::ranges::replace(tet.vertices, then, name);
 }
 
 }  // namespace kropla

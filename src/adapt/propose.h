@@ -52,6 +52,15 @@ private:
     IndexSet<Tet> cells_;
 };
 
+/// The best of the swaps that take one of these edges of the cell away, or, if so asked, one of its facets, and whose worst
+/// cell is better than `bound`.
+[[nodiscard]] std::optional<Cavity> best_swap(const Mesh& mesh, Tet t, std::span<const std::size_t> edges, bool facets,
+                                              double bound);
+
+/// Is the cell still there, and worse than that [-] R/r? How many are?
+[[nodiscard]] bool is_worse(const Mesh& mesh, Tet t, double than);
+[[nodiscard]] int count_worse(const Mesh& mesh, std::span<const Tet> cells, double than);
+
 /// Is one of the cells turned over, flat, or not finite?
 [[nodiscard]] bool is_tangled(const Mesh& mesh, std::span<const Tet> cells);
 
@@ -59,9 +68,5 @@ private:
 /// added cells elsewhere already? For a proposal of positive cells this goes without saying if all cells of the mesh are
 /// positive, too; but not in one that is tangled, where cells lie over each other.
 [[nodiscard]] bool fits(const Mesh& mesh, const Cavity& cavity);
-
-/// Makes a proposal that inserts one vertex, made when `then` was the next to be inserted, fit the mesh as it is
-/// now.
-void rename_inserted(Cavity& cavity, Vertex then, const Mesh& now);
 
 }  // namespace kropla

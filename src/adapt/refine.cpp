@@ -1,6 +1,7 @@
 // Splitting and collapsing edges towards the target size. The new vertex of a split goes to the best place
 // inside the shell instead of the edge's middle: the shell is a star-shaped polyhedron (star.cpp).
 
+#include "adapt/constants.h"
 #include "base/for_all.h"
 #include "adapt/propose.h"
 #include "adapt/zone.h"
@@ -10,24 +11,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 namespace kropla {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// How long, in terms of split_above, an edge may be that a collapse makes. Slightly above 1, so that crowded
-// vertices can go although others are too few: what is squeezed along one axis is torn along another.
-constexpr double longest_after_collapse = 1.05;
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The vertices of `t` with `to` in the place of `from`.
 std::array<Vertex, 4> with_replaced(const Mesh& mesh, Tet t, Vertex from, Vertex to) {
     auto v = mesh.tets[t];
-    v[at(corner_of(mesh, t, from))] = to;
+    v[as_size(corner_of(mesh, t, from))] = to;
     return v;
 }
 
@@ -80,16 +72,15 @@ std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge
             star.push_back({mesh.position[a], mesh.position[b], mesh.position[c]});
         }
     const Vec3 middle = (mesh.position[edge.a] + mesh.position[edge.b]) / 2;
-    const Place place = best_place(star, middle, freedom(held), 0.8 * worst_allowed);
+    const Place place = best_place(star, middle, freedom(held), split_goal * worst_allowed);
     if (place.worst > worst_allowed || place.worst == infinity) return std::nullopt;
 
     Cavity cavity;
     cavity.removed = shell.tets;
     cavity.inserted = {place.x};
-    const Vertex inserted = next_vertex(mesh);
     for (Tet t : shell.tets)
         for (Vertex end : {edge.a, edge.b})
-            cavity.added.push_back({with_replaced(mesh, t, end, inserted), mesh.region[t], mesh.patch[t]});
+            cavity.added.push_back({with_replaced(mesh, t, end, inserted_vertex(0)), mesh.region[t], mesh.patch[t]});
     cavity.worst_before = worst_aspect_ratio(mesh, shell.tets);
     cavity.worst_after = place.worst;
     return cavity;
@@ -107,8 +98,8 @@ struct WrongEdge {
 /// body.
 class EdgeMeasure {
 public:
-    EdgeMeasure(const Mesh& mesh, const Zone& zone, const Snapshot& at_time)
-        : mesh_(mesh), zone_(zone), at_time_(at_time) {}
+    EdgeMeasure(const Mesh& mesh, const Zone& zone, const ZoneMotion& motion, const Snapshot& at_time)
+        : mesh_(mesh), zone_(zone), motion_(motion), at_time_(at_time) {}
 
     [[nodiscard]] double ratio(Edge e) const {
         return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size(e.a) + size(e.b)) / 2);
@@ -120,82 +111,63 @@ public:
 
 private:
     [[nodiscard]] double size(Vertex v) const {
-        if (zone_.has.contains(v) && zone_.place[v] == mesh_.position[v]) return zone_.size[v];
+        if (zone_.has.contains(v) && motion_.place[v] == mesh_.position[v]) return motion_.size[v];
         return target_size(at_time_, mesh_.position[v]);
     }
     const Mesh& mesh_;
     const Zone& zone_;
+    const ZoneMotion& motion_;
     const Snapshot& at_time_;
 };
 
-/// The bounds of an edge's length, squared, in target sizes.
-struct Bounds {
-    double shortest, longest;
-
-    /// What is not a number breaks none.
-    [[nodiscard]] bool broken(double square, double size) const {
-        return square > longest * (size * size) || square < shortest * (size * size);
-    }
-};
-
-/// Which of four cells have an edge out of bounds, by the same arithmetic.
-KROPLA_FOR_EACH_PROCESSOR
-void tell_wrong(const FourPlaces& places, const std::array<Four, 4>& sizes, Bounds bounds, std::array<bool, 4>& wrong) {
-    const auto [a, b, c, d] = gathered(places);
-    const std::array<FourVec3, 4> x = {a, b, c, d};
-    Four beyond = -1;
-    for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = i + 1; j < 4; ++j) {
-            const Four size = (sizes[i] + sizes[j]) / 2, square = squared_norm(x[i] - x[j]);
-            const Four too_long = square - bounds.longest * (size * size);
-            const Four too_short = bounds.shortest * (size * size) - square;
-            beyond = greater(beyond, greater(too_long, too_short));
-        }
-    for (std::size_t i = 0; i < 4; ++i) wrong[i] = beyond[i] > 0;
+/// What is not a number breaks no bound.
+bool is_out_of(SquaredBounds bounds, double square, double size) {
+    return square > bounds.most * (size * size) || square < bounds.least * (size * size);
 }
 
-void find_wrong_edges(const Mesh& mesh, const Zone& zone, Tet t, Bounds bounds, std::vector<WrongEdge>& wrong) {
-    for (const auto& [i, j] : tet_edges) {
-        const Vertex a = mesh.tets[t][at(i)], b = mesh.tets[t][at(j)];
-        const double size = (zone.size[a] + zone.size[b]) / 2, square = squared_norm(zone.place[a] - zone.place[b]);
-        if (!bounds.broken(square, size)) continue;
+void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, Tet t, SquaredBounds bounds,
+                      std::vector<WrongEdge>& wrong) {
+    for (std::size_t k = 0; k < tet_edges.size(); ++k) {
+        const auto [a, b] = tet_edge(mesh, t, k);
+        const double size = (motion.size[a] + motion.size[b]) / 2;
+        const double square = squared_norm(motion.place[a] - motion.place[b]);
+        if (!is_out_of(bounds, square, size)) continue;
         wrong.push_back({{std::min(a, b), std::max(a, b)}, t, std::sqrt(square) / size});
     }
 }
 
-void find_wrong_edges_of_four(const Mesh& mesh, const Zone& zone, std::span<const Tet> cells, std::size_t first,
-                              Bounds bounds, std::vector<WrongEdge>& wrong) {
-    std::array<Four, 4> sizes;
+void find_wrong_edges_of_four(const Mesh& mesh, const ZoneMotion& motion, std::span<const Tet> cells, std::size_t first,
+                              SquaredBounds bounds, std::vector<WrongEdge>& wrong) {
+    std::array<FourNumbers, 4> sizes;  // per corner, per tet
     for (std::size_t i = 0; i < 4; ++i) {
         const auto& v = mesh.tets[cells[std::min(first + i, cells.size() - 1)]];
-        for (std::size_t k = 0; k < 4; ++k) sizes[k].set(i, zone.size[v[k]]);
+        for (std::size_t k = 0; k < 4; ++k) sizes[k][i] = motion.size[v[k]];
     }
-    std::array<bool, 4> is_wrong;
-    tell_wrong(four_cells(cells, mesh, first, zone.place), sizes, bounds, is_wrong);
+    const auto is_wrong = have_edge_out_of(bounds, four_cells(cells, mesh, first, motion.place), sizes);
     for (std::size_t i = 0; i < 4 && first + i < cells.size(); ++i)
-        if (is_wrong[i]) find_wrong_edges(mesh, zone, cells[first + i], bounds, wrong);
+        if (is_wrong[i]) find_wrong_edges(mesh, motion, cells[first + i], bounds, wrong);
 }
 
 /// Those of all cells, each as often as it has cells.
-void find_wrong_edges(const Mesh& mesh, const Zone& zone, std::span<const Tet> cells, Bounds bounds,
+void find_wrong_edges(const Mesh& mesh, const ZoneMotion& motion, std::span<const Tet> cells, SquaredBounds bounds,
                       std::vector<WrongEdge>& wrong) {
     constexpr std::size_t at_once = 4096;
     std::vector<std::vector<WrongEdge>> parts((cells.size() + at_once - 1) / at_once);
     for_all(parts.size(), [&](std::size_t part) {
         const std::size_t end = std::min(cells.size(), at_once * (part + 1));
         for (std::size_t i = at_once * part; i < end; i += 4)
-            find_wrong_edges_of_four(mesh, zone, cells, i, bounds, parts[part]);
+            find_wrong_edges_of_four(mesh, motion, cells, i, bounds, parts[part]);
     }, 1);
     for (const auto& part : parts) wrong.insert(wrong.end(), part.begin(), part.end());
 }
 
-/// The edges of the zone's cells, and of those beyond, that are too long or too short. Crowds are thinned before gaps are filled;
-/// the shortest and the longest edges come first.
-std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const Zone& zone, const AdaptOptions& o) {
-    const Bounds bounds{o.collapse_below * o.collapse_below, o.split_above * o.split_above};
+/// The edges of the motion's cells, and of those beyond, that are too long or too short. Crowds are thinned before gaps
+/// are filled; the shortest and the longest edges come first.
+std::vector<WrongEdge> wrong_edges(const Mesh& mesh, const ZoneMotion& motion, const AdaptOptions& o) {
+    const SquaredBounds bounds{o.collapse_below * o.collapse_below, o.split_above * o.split_above};
     std::vector<WrongEdge> wrong;
-    find_wrong_edges(mesh, zone, zone.cells, bounds, wrong);
-    find_wrong_edges(mesh, zone, zone.beyond, bounds, wrong);
+    find_wrong_edges(mesh, motion, motion.cells, bounds, wrong);
+    find_wrong_edges(mesh, motion, motion.beyond, bounds, wrong);
     const auto rank = [](double ratio) { return ratio > 1 ? 1 + 1 / ratio : ratio; };
     std::ranges::sort(wrong, {}, [&](const WrongEdge& w) {
         return std::tuple(rank(w.ratio), w.edge.a, w.edge.b, w.cell);
@@ -219,8 +191,8 @@ std::optional<Tet> cell_at(const Mesh& mesh, const WrongEdge& wrong) {
 
 /// The ball of a vertex while the mesh still has the cells of the zone, of which the balls of vertices that move are
 /// known.
-void ball_at_start(const Mesh& mesh, const Zone& zone, Vertex v, std::vector<Tet>& tets) {
-    if (zone.has.contains(v) && !freedom(zone, v).none()) tets = zone.ball[v];
+void ball_at_start(const Mesh& mesh, const Zone& zone, const ZoneMotion& motion, Vertex v, std::vector<Tet>& tets) {
+    if (zone.has.contains(v) && !freedom(zone, motion, v).none()) tets = zone.ball[v];
     else ball(mesh, v, tets);
 }
 
@@ -243,7 +215,7 @@ std::optional<Cavity> collapse_either_way(const Mesh& mesh, Edge e, const EdgeMe
     std::vector<Tet> around;
     for (const auto& [from, to] : {std::pair(e.a, e.b), std::pair(e.b, e.a)}) {
         ball_of(from, around);
-        if (makes_long_edge(mesh, around, from, to, measure, longest_after_collapse * o.split_above)) continue;
+        if (makes_long_edge(mesh, around, from, to, measure, longest_by_size * o.split_above)) continue;
         auto cavity = edge_collapse(mesh, from, to, around, best ? best->worst_after : infinity);
         if (!cavity || cavity->worst_after > std::max(o.passing, cavity->worst_before)) continue;
         best = std::move(cavity);
@@ -258,11 +230,11 @@ std::optional<Cavity> split(const Mesh& mesh, Edge e, Tet t, const AdaptOptions&
 
 }  // namespace
 
-Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, const AdaptOptions& options,
-                      bool tangled) {
+Changes adapt_to_size(Mesh& mesh, const Zone& zone, const ZoneMotion& motion, const Snapshot& at_time,
+                      const AdaptOptions& options, bool tangled) {
     Changes changes;
-    const EdgeMeasure measure(mesh, zone, at_time);
-    const auto wrong = wrong_edges(mesh, zone, options);
+    const EdgeMeasure measure(mesh, zone, motion, at_time);
+    const auto wrong = wrong_edges(mesh, motion, options);
     const auto first_long = std::ranges::find_if(wrong, [](const WrongEdge& w) { return w.ratio > 1; });
     const auto shorts = static_cast<std::size_t>(first_long - wrong.begin());
     const auto can_be_done = [&](const std::optional<Cavity>& cavity) {
@@ -271,7 +243,7 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
     const auto collapse = [&](std::size_t i, auto ball_of) {
         return collapse_either_way(mesh, wrong[i].edge, measure, options, ball_of);
     };
-    const auto in_zone = [&](Vertex v, std::vector<Tet>& tets) { ball_at_start(mesh, zone, v, tets); };
+    const auto in_zone = [&](Vertex v, std::vector<Tet>& tets) { ball_at_start(mesh, zone, motion, v, tets); };
     const auto in_mesh = [&](Vertex v, std::vector<Tet>& tets) { ball(mesh, v, tets); };
     Replaced replaced;
     for (auto& [i, proposed] : propose_all(shorts, [&](std::size_t i) { return collapse(i, in_zone); },
@@ -297,10 +269,8 @@ Changes adapt_to_size(Mesh& mesh, const Zone& zone, const Snapshot& at_time, con
 }
 
 Changes adapt_to_size(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, const AdaptOptions& options) {
-    Zone zone;
-    gather(zone, mesh, cells);
-    find_sizes(zone, at_time);
-    return adapt_to_size(mesh, zone, at_time, options, is_tangled(mesh, cells));
+    const auto [zone, motion] = movable(mesh, cells, &at_time);
+    return adapt_to_size(mesh, zone, motion, at_time, options, is_tangled(mesh, cells));
 }
 
 }  // namespace kropla

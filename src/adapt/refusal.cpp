@@ -1,14 +1,12 @@
 #include <kropla/adapt/refusal.h>
 
+#include "adapt/constants.h"
 #include "domain/approach.h"
 
 #include <cmath>
 
 namespace kropla {
 namespace {
-
-constexpr double narrow =
-    1;  // target sizes across the place: in less a cell has to be flat, or smaller than wanted
 
 std::string cell_words(const Trouble& trouble) {
     const std::string cell = trouble.cell.exists() ? "cell " + std::to_string(trouble.cell.value) : "a prism";
@@ -44,7 +42,7 @@ Refusal explained(const Domain& domain, const Trouble& trouble, double advised_d
     if (refusal.near) {
         const Approach& near = *refusal.near;
         const bool is_gap =
-            near.gap > 0 && width_at(at, near, trouble.place) < narrow * target_size(at, trouble.place);
+            near.gap > 0 && width_at(at, near, trouble.place) < narrow_in_sizes * target_size(at, trouble.place);
         what = is_gap ? in_gap(domain, near, trouble) : in_motion(domain, near.body, trouble);
     }
     refusal.why = "at t = " + time_words(trouble.time) + ' ' + what + " (" + cell_words(trouble) + ')';

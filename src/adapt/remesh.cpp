@@ -4,15 +4,15 @@
 // across it: remeshing spreads only where it must. The repair ladder climbs from there ring by ring.
 
 #include "adapt/budget.h"
+#include "adapt/constants.h"
+#include "adapt/propose.h"
 #include "base/random.h"
 #include <kropla/generate/generate.h>
 #include "generate/sampling.h"
-#include "mesh/index_set.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -22,18 +22,7 @@
 namespace kropla {
 namespace {
 
-constexpr double spacing_in_sizes = 0.8;     // of new points, as in the initial mesh
-constexpr double clearance_in_sizes = 0.5;   // of new points from the cluster's boundary facets
-constexpr int tries_per_point = 30;          // random candidates per point that would fit
-constexpr int most_growths = 30;             // of a cluster to take in facets that are not recovered
-constexpr double most_points_per_cell = 10;  // of a cluster; more would be to adapt sizes, which splits do
-constexpr double facets_like_a_cell = 64;    // distances to facets that cost as much as to triangulate a cell
-constexpr double like_a_treatment = 3;       // cells that cost as much to triangulate
-constexpr double treatments_within = 5;      // per bad cell of a filling
-constexpr double least_gain = 1e-3;
 constexpr Patch frozen{box_faces};           // the cluster's boundary, while it is a mesh of its own
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A set of tets with quick membership, in a fixed order.
 struct Cluster {
@@ -64,7 +53,7 @@ Hole boundary_of(const Mesh& mesh, const Cluster& cluster) {
     std::unordered_map<std::int32_t, int> number;
     for (Tet t : cluster.cells)
         for (int i = 0; i < 4; ++i) {
-            const Tet n = mesh.neighbour[t][at(i)];
+            const Tet n = mesh.neighbour[t][as_size(i)];
             if (n.exists() && cluster.contains(n)) continue;
             std::array<int, 3> facet{};
             const auto corners = facet_vertices(mesh, {t, i});
@@ -78,7 +67,7 @@ Hole boundary_of(const Mesh& mesh, const Cluster& cluster) {
             }
             hole.facets.push_back(facet);
             hole.facets_in_mesh.push_back({t, i});
-            const Patch patch = n.exists() ? Patch{} : mesh.patch[t][at(i)];
+            const Patch patch = n.exists() ? Patch{} : mesh.patch[t][as_size(i)];
             hole.stays.push_back(n.exists() || patch.value >= box_faces);
             if (hole.stays.back() == 0) hole.planes.insert({patch, mesh.position[corners[0]][patch.value / 2]});
         }
@@ -98,14 +87,14 @@ double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const V
 
 /// Is a point nearer to `x` than the target spacing?
 bool is_taken(const PointGrid& taken, const Vec3& x, double size) {
-    return taken.any_within(x, spacing_in_sizes * size, 0, std::numeric_limits<double>::infinity());
+    return taken.any_within(x, spacing_in_sizes * size, 0, infinity);
 }
 
 /// Is a boundary facet too close to `x` for a new point?
 bool is_near_boundary(const Hole& hole, const Vec3& x, double size) {
+    const auto place = [&](int number) { return hole.points[as_size(number)]; };
     return std::ranges::any_of(hole.facets, [&](const std::array<int, 3>& f) {
-        return distance_to_triangle(x, hole.points[at(f[0])], hole.points[at(f[1])], hole.points[at(f[2])]) <
-               clearance_in_sizes * size;
+        return distance_to_triangle(x, place(f[0]), place(f[1]), place(f[2])) < clearance_in_sizes * size;
     });
 }
 
@@ -134,7 +123,7 @@ bool fill_with_points(const Mesh& mesh, const Cluster& cluster, const Snapshot& 
     PointGrid taken;
     for (const Vec3& p : hole.points) taken.insert(p, target_size(at_time, p));
     for (Tet t : cluster.cells) {
-        if (aspect_ratio(mesh, t) == std::numeric_limits<double>::infinity()) continue;
+        if (aspect_ratio(mesh, t) == infinity) continue;
         const int tries = 1 + static_cast<int>(std::ceil(tries_per_point * fitting_points(mesh, t, at_time)));
         for (int i = 0; i < tries; ++i) {
             heed(watch);
@@ -190,9 +179,8 @@ std::map<std::array<int, 3>, Facet> facets_by_vertices(const Triangulation& all)
     std::map<std::array<int, 3>, Facet> seen;
     for (Tet t : all.tets.indices())
         for (int i = 0; i < 4; ++i) {
-            const auto& c = tet_facets[at(i)];
-            const auto& v = all.tets[t];
-            seen[rotated_to_least({v[at(c[0])].value, v[at(c[1])].value, v[at(c[2])].value})] = {t, i};
+            const auto [a, b, c] = facet_vertices(all.tets[t], i);
+            seen[rotated_to_least({a.value, b.value, c.value})] = {t, i};
         }
     return seen;
 }
@@ -204,7 +192,7 @@ Filling fill_hole(const Hole& hole, const Watch* watch) {
     std::vector<char> inside(all.tets.size(), 0), barred(4 * all.tets.size(), 0);
     std::vector<Tet> reached;
     const auto reach = [&](Tet t) {
-        if (std::exchange(inside[at(t.value)], 1) == 0) reached.push_back(t);
+        if (std::exchange(inside[as_size(t.value)], 1) == 0) reached.push_back(t);
     };
     for (std::size_t f = 0; f < hole.facets.size(); ++f) {
         if (hole.stays[f] == 0) continue;
@@ -213,7 +201,7 @@ Filling fill_hole(const Hole& hole, const Watch* watch) {
             filling.missing.push_back(f);
             continue;
         }
-        barred[4 * at(found->second.tet.value) + at(found->second.corner)] = 1;
+        barred[4 * as_size(found->second.tet.value) + as_size(found->second.corner)] = 1;
         reach(found->second.tet);
     }
     if (!filling.missing.empty()) return filling;
@@ -222,14 +210,13 @@ Filling fill_hole(const Hole& hole, const Watch* watch) {
         const Tet t = reached[i];
         filling.tets.push_back(all.tets[t]);
         for (int corner = 0; corner < 4; ++corner) {
-            if (barred[4 * at(t.value) + at(corner)] != 0) continue;
-            if (const Tet n = all.neighbour[t][at(corner)]; n.exists()) {
+            if (barred[4 * as_size(t.value) + as_size(corner)] != 0) continue;
+            if (const Tet n = all.neighbour[t][as_size(corner)]; n.exists()) {
                 reach(n);
                 continue;
             }
-            std::array<Vertex, 3> v{};
-            for (std::size_t k = 0; k < 3; ++k) v[k] = all.tets[t][at(tet_facets[at(corner)][k])];
-            const auto place = [&](std::size_t k) { return hole.points[at(v[k].value)]; };
+            const auto v = facet_vertices(all.tets[t], corner);
+            const auto place = [&](std::size_t k) { return hole.points[as_size(v[k].value)]; };
             const Patch face = plane_patch(hole, place(0), place(1), place(2));
             filling.closed &= face.exists();
             filling.on_box.push_back({v, face});
@@ -244,7 +231,7 @@ bool grow_across(const Mesh& mesh, const Hole& hole, std::span<const std::size_t
     bool grown = false;
     for (std::size_t f : missing) {
         const Facet facet = hole.facets_in_mesh[f];
-        const Tet n = mesh.neighbour[facet.tet][at(facet.corner)];
+        const Tet n = mesh.neighbour[facet.tet][as_size(facet.corner)];
         if (!n.exists() || mesh.region[n] != mesh.region[facet.tet]) continue;
         cluster.add(n);
         grown = true;
@@ -271,7 +258,7 @@ Mesh improved_filling(const Hole& hole, const Filling& filling, const Snapshot& 
     AdaptOptions within = options;
     within.clusters = false;
     within.treatments = treatments_within;
-    budget.take(like_a_treatment * improve(mesh, cells, at_time, within).treated);
+    budget.take(cells_like_a_treatment * improve(mesh, cells, at_time, within).treated);
     return mesh;
 }
 
@@ -284,11 +271,11 @@ Cavity as_cavity(const Mesh& mesh, const Cluster& cluster, const Hole& hole, con
         if (!alive(filled, v)) continue;
         // A vertex of a face of the box that has slid on it comes as a new one: no cell outside had the old
         // one.
-        const bool known = at(v.value) < hole.vertices.size();
-        if (known && filled.position[v] == hole.points[at(v.value)]) {
-            name[v] = hole.vertices[at(v.value)];
+        const bool known = as_size(v.value) < hole.vertices.size();
+        if (known && filled.position[v] == hole.points[as_size(v.value)]) {
+            name[v] = hole.vertices[as_size(v.value)];
         } else {
-            name[v] = next_vertex(mesh, cavity.inserted.size());
+            name[v] = inserted_vertex(cavity.inserted.size());
             cavity.inserted.push_back(filled.position[v]);
         }
     }
@@ -376,7 +363,7 @@ void remesh_regions(Mesh& mesh, const std::vector<Tet>& bad, const Snapshot& at_
                     Changes& changes) {
     std::set<Region> tried;
     for (Tet t : bad) {
-        if (!alive(mesh, t) || !(aspect_ratio(mesh, t) > options.floor)) continue;
+        if (!is_worse(mesh, t, options.floor)) continue;
         if (!tried.insert(mesh.region[t]).second) continue;
         const auto cavity = cluster_remesh(mesh, all_tets(mesh, mesh.region[t]), at_time, options);
         if (!cavity) continue;
@@ -393,16 +380,13 @@ Changes repair(Mesh& mesh, std::span<const Tet> cells, const Snapshot& at_time, 
     Budget budget(allowed);
     std::vector<Tet> left;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (!alive(mesh, cells[i]) || aspect_ratio(mesh, cells[i]) <= options.floor) continue;
+        if (!is_worse(mesh, cells[i], options.floor)) continue;
         heed(options.watch, "repairing cells", static_cast<double>(i) / static_cast<double>(cells.size()));
         if (!climb(mesh, cells[i], at_time, options, budget, changes)) left.push_back(cells[i]);
     }
     if (options.whole_region) remesh_regions(mesh, left, at_time, options, changes);
     changes.cut_out += static_cast<int>(allowed - budget.left());
-    if (budget.spent())
-        changes.given_up += static_cast<int>(std::ranges::count_if(left, [&](Tet t) {
-            return alive(mesh, t) && aspect_ratio(mesh, t) > options.floor;
-        }));
+    if (budget.spent()) changes.given_up += count_worse(mesh, left, options.floor);
     return changes;
 }
 

@@ -2,19 +2,13 @@
 // by an edge; guarded by the worst aspect ratio of the ball; and optimisation of the worst (star.cpp).
 
 #include <kropla/adapt/adapt.h>
+#include "adapt/constants.h"
 #include "adapt/star.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace kropla {
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 Vec3 laplacian_place(std::span<const Vec3> neighbours, const LaplaceWeights& weights) {
     std::vector<double> reach;  // per neighbour: the sum of its distances to the others
     double sum = 0;
@@ -57,7 +51,7 @@ std::vector<Vertex> smooth_guarded(Mesh& mesh, std::span<const Vertex> vertices,
         const Vec3 place = laplacian_place(mesh, v, weights);
         if (place == mesh.position[v]) continue;
         ball(mesh, v, around);
-        star_of_ball(mesh, v, around, star);
+        star_of_ball(mesh, mesh.position, v, around, star);
         const double worst = worst_in_star(star, mesh.position[v], infinity);
         if (worst_in_star(star, place, worst) > worst) continue;
         mesh.position[v] = place;

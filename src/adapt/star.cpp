@@ -6,73 +6,48 @@
 
 #include "adapt/star.h"
 
+#include "adapt/constants.h"
 #include "base/tetrahedron.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace kropla {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double active_share = 0.93;    // tets this near to the worst take part in choosing the direction
-constexpr double least_gain = 1e-2;      // relative; smaller steps do not pay
-constexpr int most_steps = 8;
-constexpr int most_halvings = 4;
-
 Vec3 shortest_in_hull(std::span<const Vec3> gradients) {
     Vec3 p = gradients.front();
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < hull_iterations; ++i) {
         const auto least = std::ranges::min_element(gradients, {}, [&](const Vec3& g) { return dot(p, g); });
         const Vec3 towards = *least - p;
         const double length = squared_norm(towards);
-        if (length == 0 || -dot(p, towards) < 1e-3 * squared_norm(p)) break;
+        if (length == 0 || -dot(p, towards) < hull_tolerance * squared_norm(p)) break;
         p += std::clamp(-dot(p, towards) / length, 0.0, 1.0) * towards;
     }
     return p;
 }
 
-/// A star by four facets at a time; those that fill up stand twice.
-struct FourFacets {
-    FourVec3 a, b, c;
-    Four ratios;  // of the tets that they made with the last point asked for
-};
-
-std::vector<FourFacets> by_fours(std::span<const StarFacet> star) {
-    std::vector<FourFacets> fours((star.size() + 3) / 4);
-    for (std::size_t i = 0; i < 4 * fours.size(); ++i) {
-        const StarFacet& facet = star[std::min(i, star.size() - 1)];
-        FourFacets& four = fours[i / 4];
-        set(four.a, i % 4, facet.a);
-        set(four.b, i % 4, facet.b);
-        set(four.c, i % 4, facet.c);
-    }
-    return fours;
-}
-
 /// As worst_in_star; if `bound` is not exceeded, the ratios are there afterwards.
-double find_ratios(std::span<FourFacets> star, const Vec3& x, double bound) {
+double find_all_ratios(std::span<FourFacets> star, const Vec3& x, double bound) {
     double worst = 0;
     for (FourFacets& four : star) {
-        tet_aspect_ratios({four_times(x), four.a, four.b, four.c}, four.ratios);
-        const Four& r = four.ratios;
+        find_ratios(four, x);
+        const FourNumbers& r = four.ratios;
         worst = std::max({worst, r[0], r[1], r[2], r[3]});
         if (worst > bound) return worst;
     }
     return worst;
 }
 
-/// The direction of steepest descent of the worst ratio; its length is the slope along it. The ratios at `x`
-/// are known.
-Vec3 descent(std::span<const FourFacets> star, const Vec3& x, double worst, const Freedom& f) {
+/// The direction of steepest descent of the worst ratio; its length is the slope along it. `fours` has the ratios at `x`.
+Vec3 descent(std::span<const StarFacet> star, std::span<const FourFacets> fours, const Vec3& x, double worst,
+             const Freedom& f) {
     std::array<Vec3, 16> gradients;
     std::size_t count = 0;
-    for (const FourFacets& four : star)
-        for (std::size_t i = 0; i < 4 && count < gradients.size(); ++i) {
-            if (four.ratios[i] < active_share * worst) continue;
-            const auto [a, b, c] = std::array{one_of(four.a, i), one_of(four.b, i), one_of(four.c, i)};
-            gradients[count++] = restricted(tet_aspect_gradient(x, a, b, c).gradient, f);
-        }
+    for (std::size_t i = 0; i < 4 * fours.size() && count < gradients.size(); ++i) {
+        if (fours[i / 4].ratios[i % 4] < active_share * worst) continue;
+        const auto& [a, b, c] = star[std::min(i, star.size() - 1)];
+        gradients[count++] = restricted(tet_aspect_gradient(x, a, b, c).gradient, f);
+    }
     return -shortest_in_hull({gradients.data(), count});
 }
 
@@ -84,18 +59,19 @@ double shortest_distance(std::span<const StarFacet> star, const Vec3& x) {
 
 }  // namespace
 
-void star_of_ball(const Mesh& mesh, Vertex v, std::span<const Tet> ball, std::vector<StarFacet>& star) {
+void star_of_ball(const Mesh& mesh, const Array<Vertex, Vec3>& places, Vertex v, std::span<const Tet> ball,
+                  std::vector<StarFacet>& star) {
     star.clear();
     for (Tet t : ball) {
         const auto [a, b, c] = facet_vertices(mesh, {t, corner_of(mesh, t, v)});
-        star.push_back({mesh.position[a], mesh.position[b], mesh.position[c]});
+        star.push_back({places[a], places[b], places[c]});
     }
 }
 
 Freedom freedom(const Constraint& c) {
     Freedom f;
     for (int axis = 0; axis < 3; ++axis)
-        f.along[static_cast<std::size_t>(axis)] = !c.rigid() && (c.patches & (3u << (2 * axis))) == 0;
+        f.along[as_size(axis)] = !c.rigid() && (c.patches & (3u << (2 * axis))) == 0;
     return f;
 }
 
@@ -114,19 +90,19 @@ double worst_in_star(std::span<const StarFacet> star, const Vec3& x, double boun
 
 Place best_place(std::span<const StarFacet> star, const Vec3& start, const Freedom& f, double good_enough) {
     auto fours = by_fours(star);
-    Place best{start, find_ratios(fours, start, infinity)};
-    double reach = 0.25 * shortest_distance(star, start);
+    Place best{start, find_all_ratios(fours, start, infinity)};
+    double reach = first_step * shortest_distance(star, start);
     for (int step = 0; step < most_steps && best.worst > good_enough; ++step) {
-        const Vec3 slope = descent(fours, best.x, best.worst, f);
+        const Vec3 slope = descent(star, fours, best.x, best.worst, f);
         const double steepness = norm(slope);
         if (!(steepness > 0) || !std::isfinite(steepness)) break;
         // As far as the linear model takes the worst ratio to the goal, but within reach.
-        double length = std::min(reach, 1.2 * (best.worst - 0.8 * good_enough) / steepness);
+        double length = std::min(reach, overshoot * (best.worst - descent_goal * good_enough) / steepness);
         bool improved = false;
         for (int halving = 0; halving < most_halvings && !improved; ++halving, length /= 2) {
             const Vec3 x = best.x + length / steepness * slope;
-            const double worst = find_ratios(fours, x, (1 - least_gain) * best.worst);
-            if (worst < (1 - least_gain) * best.worst) {
+            const double worst = find_all_ratios(fours, x, (1 - least_smoothing_gain) * best.worst);
+            if (worst < (1 - least_smoothing_gain) * best.worst) {
                 best = {x, worst};
                 improved = true;
                 reach = 2 * length;
@@ -141,7 +117,7 @@ Place better_place(const Mesh& mesh, Vertex v, std::span<const Tet> ball, double
     const Freedom f = freedom(constraint(mesh, v, ball));
     if (f.none()) return {mesh.position[v], infinity};
     std::vector<StarFacet> star;
-    star_of_ball(mesh, v, ball, star);
+    star_of_ball(mesh, mesh.position, v, ball, star);
     return best_place(star, mesh.position[v], f, good_enough);
 }
 

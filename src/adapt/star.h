@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/tetrahedron.h"
 #include <kropla/mesh/mesh.h>
 #include <kropla/mesh/topology.h>
 
@@ -9,14 +10,9 @@
 
 namespace kropla {
 
-/// A facet of a star-shaped polyhedron, by its corners, seen counter-clockwise from outside: with a point x
-/// inside it makes the tet (x, a, b, c).
-struct StarFacet {
-    Vec3 a, b, c;
-};
-
-/// The link of a vertex as the polyhedron in which it may move.
-void star_of_ball(const Mesh& mesh, Vertex v, std::span<const Tet> ball, std::vector<StarFacet>& star);
+/// The link of a vertex, its vertices at `places`, as the polyhedron in which it may move.
+void star_of_ball(const Mesh& mesh, const Array<Vertex, Vec3>& places, Vertex v, std::span<const Tet> ball,
+                  std::vector<StarFacet>& star);
 
 /// Along which axes a vertex may move: not across the faces of the box it lies on.
 struct Freedom {

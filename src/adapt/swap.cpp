@@ -5,22 +5,17 @@
 // open: an edge on a face of the box, whose two ends of the ring then close it within the face.
 
 #include <kropla/adapt/adapt.h>
+#include "adapt/constants.h"
 #include "base/tetrahedron.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 namespace kropla {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double least_gain = 1e-3;         // relative fall of the worst ratio that pays
-constexpr double least_energy_gain = 0.05;  // and of the energy
 constexpr std::size_t most = longest_ring;
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using Corners = std::array<const Vec3*, 4>;
 
@@ -30,22 +25,22 @@ struct Measure {
 
     [[nodiscard]] double together(double a, double b) const { return goal.by_energy ? a + b : std::max(a, b); }
     /// Of up to four cells at once.
-    [[nodiscard]] Four of_each(std::span<const Corners> tets) const {
+    [[nodiscard]] FourNumbers of_each(std::span<const Corners> tets) const {
         const auto which = [&](std::size_t i) { return tets[std::min(i, tets.size() - 1)]; };
         const FourPlaces four = {which(0), which(1), which(2), which(3)};
-        Four ratios, energies;
-        if (goal.by_energy) tet_aspect_ratios(four, ratios, energies);
-        else tet_aspect_ratios(four, ratios);
-        Four& values = goal.by_energy ? energies : ratios;
+        RatiosAndEnergies of;
+        if (goal.by_energy) of = tet_energies(four);
+        else of.ratios = tet_aspect_ratios(four);
+        FourNumbers& values = goal.by_energy ? of.energies : of.ratios;
         for (std::size_t i = 0; i < 4; ++i)
-            if (ratios[i] > goal.limit || ratios[i] == infinity) values.set(i, infinity);
+            if (of.ratios[i] > goal.limit || of.ratios[i] == infinity) values[i] = infinity;
         return values;
     }
     [[nodiscard]] double of_all(std::span<const Corners> tets) const {
         double all = 0;
         for (std::size_t first = 0; first < tets.size(); first += 4) {
             const auto some = tets.subspan(first, std::min<std::size_t>(4, tets.size() - first));
-            const Four each = of_each(some);
+            const FourNumbers each = of_each(some);
             for (std::size_t i = 0; i < some.size(); ++i) all = together(all, each[i]);
         }
         return all;
@@ -99,7 +94,7 @@ RingTable triangulate_ring(const Mesh& mesh, Edge edge, std::span<const Vertex> 
             for (std::size_t first = 0; first < cuts.count; first += 2) {  // two triangles, four tets at once
                 const std::size_t last = std::min(first + 1, cuts.count - 1);
                 const Vec3 *p = place(i), *q = place(cuts.corner[first]), *s = place(cuts.corner[last]), *r = place(j);
-                const Four each = measure.of_each(std::array<Corners, 4>{{{p, q, r, b}, {q, p, r, a}, {p, s, r, b},
+                const FourNumbers each = measure.of_each(std::array<Corners, 4>{{{p, q, r, b}, {q, p, r, a}, {p, s, r, b},
                                                                          {s, p, r, a}}});
                 for (std::size_t c = first; c <= last; ++c) {
                     const double above = measure.together(cuts.sides[c], each[2 * (c - first)]);
@@ -141,11 +136,11 @@ void add_tets(const RingTriangles& of, const RingTable& table, std::size_t i, st
 }  // namespace
 
 std::optional<Cavity> face_removal(const Mesh& mesh, Facet facet, SwapGoal goal) {
-    const Tet below = facet.tet, above = mesh.neighbour[below][at(facet.corner)];
+    const Tet below = facet.tet, above = mesh.neighbour[below][as_size(facet.corner)];
     if (!above.exists() || mesh.region[above] != mesh.region[below]) return std::nullopt;
     const auto f = facet_vertices(mesh, facet);
-    const Vertex p = mesh.tets[below][at(facet.corner)];
-    const Vertex q = mesh.tets[above][at(mirror_corner(mesh, facet))];
+    const Vertex p = mesh.tets[below][as_size(facet.corner)];
+    const Vertex q = mesh.tets[above][as_size(mirror_corner(mesh, facet))];
 
     const Measure measure{goal};
     std::array<Corners, 3> around;

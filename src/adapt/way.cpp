@@ -14,8 +14,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Six times the volume of a tet as its corners go along straight lines, as a cubic in the fraction s of the
 /// way: its four Bernstein coefficients on [0, 1].
 std::array<double, 4> volume_along(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de) {
@@ -48,47 +46,19 @@ double positive_share(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& d
     return positive_until(b);
 }
 
-double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& displacement, double least) {
-    const auto& v = mesh.tets[t];
-    std::array<Vec3, 3> e, de;
-    for (int i = 0; i < 3; ++i) {
-        e[at(i)] = mesh.position[v[at(i + 1)]] - mesh.position[v[0]];
-        de[at(i)] = displacement[v[at(i + 1)]] - displacement[v[0]];
-    }
-    return positive_share(e, de, least);
-}
-
 double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& start, const Array<Vertex, Vec3>& place,
                      double least) {
     const auto& v = mesh.tets[t];
     std::array<Vec3, 3> e, de;
     for (int i = 0; i < 3; ++i) {
-        e[at(i)] = start[v[at(i + 1)]] - start[v[0]];
-        de[at(i)] = place[v[at(i + 1)]] - place[v[0]] - e[at(i)];
+        e[as_size(i)] = start[v[as_size(i + 1)]] - start[v[0]];
+        de[as_size(i)] = place[v[as_size(i + 1)]] - place[v[0]] - e[as_size(i)];
     }
     return positive_share(e, de, least);
 }
 
-/// The length of the longest row.
-[[gnu::always_inline]] inline Four longest(const std::array<FourVec3, 3>& rows) {
-    return square_root(greater(greater(squared_norm(rows[0]), squared_norm(rows[1])), squared_norm(rows[2])));
-}
-
-/// Which of four cells keep `least` of their volume on the way without doubt, told by their sizes: a determinant
-/// of rows that are no longer than L and change by no more than D changes by at most (L + D)^3 - L^3 [by
-/// Hadamard's inequality for each of its terms].
-KROPLA_FOR_EACH_PROCESSOR
-void tell_safe(const FourPlaces& from, const FourPlaces& to, double least, std::array<bool, 4>& safe) {
-    const FourTets start = gathered(from), end = gathered(to);
-    const std::array<FourVec3, 3> e = {start.b - start.a, start.c - start.a, start.d - start.a};
-    const FourVec3 da = end.a - start.a;
-    const std::array<FourVec3, 3> de = {end.b - start.b - da, end.c - start.c - da, end.d - start.d - da};
-    const Four l = longest(e), d = longest(de);
-    const Four surplus = (1 - least) * determinant(e[0], e[1], e[2]) - d * (3 * l * (l + d) + d * d);
-    for (std::size_t i = 0; i < 4; ++i) safe[i] = surplus[i] > 0;
-}
-
-/// The same for one corner of a prism, whose rows differ in length: told by the product of the lengths.
+/// Does the corner of a prism keep its Jacobian without doubt? As surely_keep_volume for a tet, but told by the product of
+/// the lengths of the rows, which differ.
 bool is_surely_safe(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de, double least) {
     double longest = 1, lengths = 1;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -106,31 +76,25 @@ std::array<Vec3, 3> edges_at(const std::array<Vec3, 6>& x, std::size_t i) {
 
 }  // namespace
 
-double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<Vertex, Vec3>& displacement,
-                     double least) {
-    double fraction = 1;
-    for (Tet t : cells) fraction = std::min(fraction, safe_fraction(mesh, t, displacement, least));
-    return fraction;
-}
-
-MoveReport check_way(const Zone& zone, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least) {
-    std::vector<double> safe(zone.cells.size(), 1);
+MoveReport check_way(const ZoneMotion& motion, const Mesh& mesh, const Array<Vertex, Vec3>& start, double least) {
+    std::vector<double> safe(motion.cells.size(), 1);
     for_all((safe.size() + 3) / 4, [&](std::size_t four) {
         const std::size_t first = 4 * four;
-        std::array<bool, 4> is_safe;
-        tell_safe(four_cells(zone.cells, mesh, first, start), four_cells(zone.cells, mesh, first, zone.place), least, is_safe);
+        const auto is_safe = surely_keep_volume(four_cells(motion.cells, mesh, first, start),
+                                                four_cells(motion.cells, mesh, first, motion.place), least);
         for (std::size_t i = 0; i < 4 && first + i < safe.size(); ++i)
-            if (!is_safe[i]) safe[first + i] = safe_fraction(mesh, zone.cells[first + i], start, zone.place, least);
+            if (!is_safe[i]) safe[first + i] = safe_fraction(mesh, motion.cells[first + i], start, motion.place, least);
     });
     MoveReport report{true, 1, {}};
     for (std::size_t c = 0; c < safe.size(); ++c)
-        if (safe[c] < report.fraction) report = {false, safe[c], zone.cells[c]};
+        if (safe[c] < report.fraction) report = {false, safe[c], motion.cells[c]};
     return report;
 }
 
-double safe_fraction(const Mesh& from, const Mesh& to, std::span<const Tet> cells, double least) {
+double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<Vertex, Vec3>& start,
+                     const Array<Vertex, Vec3>& place, double least) {
     double fraction = 1;
-    for (Tet t : cells) fraction = std::min(fraction, safe_fraction(from, t, from.position, to.position, least));
+    for (Tet t : cells) fraction = std::min(fraction, safe_fraction(mesh, t, start, place, least));
     return fraction;
 }
 

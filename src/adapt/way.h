@@ -7,9 +7,10 @@
 
 namespace kropla {
 
-/// The largest fraction in [0, 1] of the way between two meshes of one connectivity up to which all of `cells` keep a
-/// volume of at least `least` of what they have in `from`.
-[[nodiscard]] double safe_fraction(const Mesh& from, const Mesh& to, std::span<const Tet> cells, double least);
+/// The largest fraction in [0, 1] of the way from `start` to `place` up to which all of `cells` keep a volume of at least
+/// `least` of what they have at the start; from the cubic of each cell's volume along its way.
+[[nodiscard]] double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<Vertex, Vec3>& start,
+                                   const Array<Vertex, Vec3>& place, double least);
 
 /// The same for the Jacobians at the six corners of a prism, numbered as in cells.h.
 [[nodiscard]] double safe_fraction(const std::array<Vec3, 6>& from, const std::array<Vec3, 6>& to, double least);

@@ -9,32 +9,21 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Makes room for what the mesh has.
 void fit(Zone& zone, const Mesh& mesh) {
-    const std::size_t vertices = mesh.position.size(), tets = mesh.tets.size();
-    if (zone.ball.size() < vertices) {
-        zone.ball.resize(vertices);
-        zone.axes.resize(vertices, 0);
-        zone.moves.resize(vertices, 0);
-        zone.place.resize(vertices);
-        zone.size.resize(vertices, 0);
-    }
-    if (zone.ratio.size() < tets) {
-        zone.ratio.resize(tets, 0);
-        zone.pull.resize(tets);
-    }
+    if (zone.ball.size() >= mesh.position.size()) return;
+    zone.ball.resize(mesh.position.size());
+    zone.axes.resize(mesh.position.size(), 0);
 }
 
 /// What the facet opposite the corner lets its vertices do: the axes along which they may slide, or `rim`.
 unsigned char axes_at(const Zone& zone, const Mesh& mesh, Tet t, int corner) {
-    const Tet n = mesh.neighbour[t][at(corner)];
+    const Tet n = mesh.neighbour[t][as_size(corner)];
     if (n.exists()) {
         if (mesh.region[n] != mesh.region[t]) return 0;
         return zone.holds.contains(n) ? Zone::all_axes : Zone::rim;
     }
-    const Patch patch = mesh.patch[t][at(corner)];
+    const Patch patch = mesh.patch[t][as_size(corner)];
     return patch.value < box_faces ? static_cast<unsigned char>(Zone::all_axes & ~(1 << patch.value / 2)) : 0;
 }
 
@@ -42,7 +31,7 @@ unsigned char axes_of(const Zone& zone, const Mesh& mesh, Vertex v) {
     unsigned char axes = Zone::all_axes, rim = 0;
     for (Tet t : zone.ball[v])
         for (int corner = 0; corner < 4; ++corner) {
-            if (mesh.tets[t][at(corner)] == v) continue;
+            if (mesh.tets[t][as_size(corner)] == v) continue;
             const unsigned char here = axes_at(zone, mesh, t, corner);
             axes &= here;
             rim |= here & Zone::rim;
@@ -90,7 +79,7 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
     IndexSet<Vertex> touched;
     replaced.for_each([&](Tet t) {
         zone.holds.erase(t);
-        if (at(t.value) >= mesh.tets.size() || !alive(mesh, t)) return;
+        if (as_size(t.value) >= mesh.tets.size() || !alive(mesh, t)) return;
         for (Vertex v : mesh.tets[t]) touched.insert(v);
         if (mesh.region[t] == surroundings) cells.push_back(t);
     });
@@ -112,16 +101,13 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
         if (zone.axes[v] != Zone::all_axes) zone.axes[v] = axes_of(zone, mesh, v);
     });
     zone.has.for_each([&](Vertex v) {
-        if (at(v.value) < mesh.position.size() && alive(mesh, v) && !zone.ball[v].empty()) return;
+        if (as_size(v.value) < mesh.position.size() && alive(mesh, v) && !zone.ball[v].empty()) return;
         zone.ball[v].clear();
         zone.has.erase(v);
     });
 }
 
-void shrink(Zone& zone, const Mesh& mesh) {
-    IndexSet<Tet> stay;
-    for (Tet t : zone.cells) stay.insert(t);
-    for (Tet t : zone.beyond) stay.insert(t);
+void shrink(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& stay) {
     IndexSet<Vertex> touched;
     zone.holds.for_each([&](Tet t) {
         if (stay.contains(t)) return;
@@ -131,59 +117,66 @@ void shrink(Zone& zone, const Mesh& mesh) {
     settle(zone, mesh, touched);
 }
 
-void clear(Zone& zone) {
-    zone.has.for_each([&](Vertex v) {
-        zone.ball[v].clear();
-        zone.moves[v] = 0;
-    });
-    zone.has.clear();
-    zone.holds.clear();
-    begin_motion(zone);
+void begin_motion(ZoneMotion& motion) {
+    for (Vertex v : motion.vertices) motion.moves[v] = 0;
+    for (Vertex v : motion.bodies) motion.moves[v] = 0;
+    motion.bodies.clear();
+    motion.vertices.clear();
+    motion.cells.clear();
+    motion.beyond.clear();
 }
 
-void begin_motion(Zone& zone) {
-    for (Vertex v : zone.vertices) zone.moves[v] = 0;
-    for (Vertex v : zone.bodies) zone.moves[v] = 0;
-    zone.bodies.clear();
-    zone.vertices.clear();
-    zone.cells.clear();
-    zone.beyond.clear();
+void fit(ZoneMotion& motion, const Mesh& mesh) {
+    const std::size_t vertices = mesh.position.size(), tets = mesh.tets.size();
+    if (motion.moves.size() < vertices) {
+        motion.moves.resize(vertices, 0);
+        motion.place.resize(vertices);
+        motion.size.resize(vertices, 1);
+    }
+    if (motion.ratio.size() < tets) {
+        motion.ratio.resize(tets, 0);
+        motion.centroid.resize(tets);
+    }
 }
 
-void gather(Zone& zone, const Mesh& mesh, std::span<const Tet> cells) {
-    clear(zone);
+MovableCells movable(const Mesh& mesh, std::span<const Tet> cells, const Snapshot* at_time) {
+    MovableCells result;
+    auto& [zone, motion] = result;
     std::vector<Tet> living;
     std::ranges::copy_if(cells, std::back_inserter(living), [&](Tet t) { return alive(mesh, t); });
     add_cells(zone, mesh, living);
-    zone.vertices = zone.has.list();
-    for (Vertex v : zone.vertices) {
-        zone.moves[v] = Zone::by_itself;
-        zone.place[v] = mesh.position[v];
+    fit(motion, mesh);
+    motion.vertices = zone.has.list();
+    for (Vertex v : motion.vertices) {
+        motion.moves[v] = ZoneMotion::by_itself;
+        motion.place[v] = mesh.position[v];
     }
-    list_cells(zone, mesh);
+    list_cells(zone, motion, mesh);
+    if (at_time) find_sizes(motion, *at_time);
+    return result;
 }
 
-void list_cells(Zone& zone, const Mesh& mesh) {
-    zone.cells.clear();
-    zone.beyond.clear();
+void list_cells(const Zone& zone, ZoneMotion& motion, const Mesh& mesh) {
+    motion.cells.clear();
+    motion.beyond.clear();
     zone.holds.for_each([&](Tet t) {
         const auto& v = mesh.tets[t];
-        const auto moves = zone.moves[v[0]] | zone.moves[v[1]] | zone.moves[v[2]] | zone.moves[v[3]];
-        if ((moves & (Zone::by_itself | Zone::with_body)) != 0) zone.cells.push_back(t);
-        else if (moves != 0) zone.beyond.push_back(t);
+        const auto moves = motion.moves[v[0]] | motion.moves[v[1]] | motion.moves[v[2]] | motion.moves[v[3]];
+        if ((moves & (ZoneMotion::by_itself | ZoneMotion::with_body)) != 0) motion.cells.push_back(t);
+        else if (moves != 0) motion.beyond.push_back(t);
     });
 }
 
-void find_sizes(Zone& zone, const Snapshot& at_time) {
-    for_all(zone.vertices.size(), [&](std::size_t i) {
-        const Vertex v = zone.vertices[i];
-        zone.size[v] = target_size(at_time, zone.place[v]);
+void find_sizes(ZoneMotion& motion, const Snapshot& at_time) {
+    for_all(motion.vertices.size(), [&](std::size_t i) {
+        const Vertex v = motion.vertices[i];
+        motion.size[v] = target_size(at_time, motion.place[v]);
     });
 }
 
-double aspect_ratio(const Zone& zone, const Mesh& mesh, Tet t) {
+double aspect_ratio(const ZoneMotion& motion, const Mesh& mesh, Tet t) {
     const auto& v = mesh.tets[t];
-    return tet_aspect_ratio(zone.place[v[0]], zone.place[v[1]], zone.place[v[2]], zone.place[v[3]]);
+    return tet_aspect_ratio(motion.place[v[0]], motion.place[v[1]], motion.place[v[2]], motion.place[v[3]]);
 }
 
 FourPlaces four_cells(std::span<const Tet> cells, const Mesh& mesh, std::size_t first,
@@ -196,32 +189,34 @@ FourPlaces four_cells(std::span<const Tet> cells, const Mesh& mesh, std::size_t 
     return tets;
 }
 
-void star_of_ball(const Zone& zone, const Mesh& mesh, Vertex vertex, std::vector<StarFacet>& star) {
-    star.clear();
-    for (Tet t : zone.ball[vertex]) {
-        const auto [a, b, c] = facet_vertices(mesh, {t, corner_of(mesh, t, vertex)});
-        star.push_back({zone.place[a], zone.place[b], zone.place[c]});
-    }
-}
-
-Freedom freedom(const Zone& zone, Vertex v) {
-    const unsigned axes = zone.moves[v] == Zone::by_itself ? zone.axes[v] : 0u;
+Freedom freedom(const Zone& zone, const ZoneMotion& motion, Vertex v) {
+    const unsigned axes = motion.moves[v] == ZoneMotion::by_itself ? zone.axes[v] : 0u;
     return {{(axes & 1) != 0, (axes & 2) != 0, (axes & 4) != 0}};
 }
 
-std::vector<Vertex> vertices_of_worse(const Zone& zone, const Mesh& mesh, double above) {
+std::vector<Vec3> places(const ZoneMotion& motion) {
+    std::vector<Vec3> now;
+    for (Vertex v : motion.vertices) now.push_back(motion.place[v]);
+    return now;
+}
+
+void put_back(ZoneMotion& motion, std::span<const Vec3> places) {
+    for (std::size_t i = 0; i < places.size(); ++i) motion.place[motion.vertices[i]] = places[i];
+}
+
+std::vector<Vertex> vertices_of_worse(const Zone& zone, const ZoneMotion& motion, const Mesh& mesh, double above) {
     IndexSet<Vertex> vertices;
-    for (Tet t : zone.cells)
-        if (zone.ratio[t] > above)
+    for (Tet t : motion.cells)
+        if (motion.ratio[t] > above)
             for (Vertex v : mesh.tets[t])
-                if (!freedom(zone, v).none()) vertices.insert(v);
+                if (!freedom(zone, motion, v).none()) vertices.insert(v);
     return vertices.list();
 }
 
-void write_places(const Zone& zone, Mesh& mesh) {
-    for (Vertex v : zone.bodies) mesh.position[v] = zone.place[v];
-    for (Vertex v : zone.vertices)
-        if (zone.moves[v] != 0) mesh.position[v] = zone.place[v];
+void write_places(const ZoneMotion& motion, Mesh& mesh) {
+    for (Vertex v : motion.bodies) mesh.position[v] = motion.place[v];
+    for (Vertex v : motion.vertices)
+        if (motion.moves[v] != 0) mesh.position[v] = motion.place[v];
 }
 
 }  // namespace kropla

@@ -9,6 +9,9 @@
 
 namespace kropla {
 
+/// A number of a corner, an axis, a slot as arrays of the standard library want it; it is not negative.
+constexpr std::size_t as_size(std::int32_t i) { return static_cast<std::size_t>(i); }
+
 /// A number that names one thing of one kind: `Index<struct VertexTag>` and `Index<struct TetTag>` do not
 /// mix. The default names nothing; 32 bits, so that a mesh holds at most 2^31 - 1 things of a kind.
 template <class Tag>
@@ -83,8 +86,8 @@ public:
 
 private:
     [[nodiscard]] std::size_t at(I i) const {
-        assert(i.exists() && static_cast<std::size_t>(i.value) < items_.size());
-        return static_cast<std::size_t>(i.value);
+        assert(i.exists() && as_size(i.value) < items_.size());
+        return as_size(i.value);
     }
 
     std::vector<T> items_;

@@ -3,10 +3,13 @@
 
 #include "base/tetrahedron.h"
 
+#include "base/four.h"
 #include <kropla/base/predicates.h>
 #include "base/predicates_filter.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace kropla {
@@ -58,31 +61,109 @@ double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 
 namespace {
 
-// Always a part of what calls it, so that it is compiled for the same processor.
-[[gnu::always_inline]] inline Shape<Four> shape_of(const FourTets& tets, Four& ratios) {
+// What it brings to do four at once, in instructions by callgrind, as `advance` goes the ten steps of cases/quick.toml (no
+// heat, size.surface 3e-4, growth 0.15): one by one, tet_aspect_ratios makes them 7.6 % more, tet_energies 7.4 %,
+// find_ratios 6.7 %, surely_keep_volume 3.4 %, have_edge_out_of 2.9 %.
+
+/// The corners of four tets.
+struct FourTets {
+    FourVec3 a, b, c, d;
+};
+
+// Always a part of what calls them, so that they are compiled for the same processor.
+[[gnu::always_inline]] inline FourTets gathered(const FourPlaces& tets) {
+    const auto corner = [&](std::size_t k) { return four_of(*tets[0][k], *tets[1][k], *tets[2][k], *tets[3][k]); };
+    return {corner(0), corner(1), corner(2), corner(3)};
+}
+
+[[gnu::always_inline]] inline Four four_of(const FourNumbers& a) { return Four(Four::Register{a[0], a[1], a[2], a[3]}); }
+
+[[gnu::always_inline]] inline void store(const Four& from, FourNumbers& to) { std::memcpy(&to, &from.all, sizeof to); }
+
+[[gnu::always_inline]] inline Shape<Four> shape_of(const FourTets& tets, FourNumbers& ratios) {
     const auto& [a, b, c, d] = tets;
     const auto shape = shape_of(b - a, c - a, d - a);
-    ratios = shape.ratio;
+    store(shape.ratio, ratios);
     if (all_greater(shape.v6, 0) && filter::all_certain(shape.v6, shape.uu, shape.vv, shape.ww) &&
-        all_greater(ratios, 0))
+        all_greater(shape.ratio, 0))
         return shape;
     for (std::size_t i = 0; i < 4; ++i)
-        ratios.set(i, tet_aspect_ratio(one_of(a, i), one_of(b, i), one_of(c, i), one_of(d, i)));
+        ratios[i] = tet_aspect_ratio(one_of(a, i), one_of(b, i), one_of(c, i), one_of(d, i));
     return shape;
+}
+
+/// The length of the longest row.
+[[gnu::always_inline]] inline Four longest(const std::array<FourVec3, 3>& rows) {
+    return square_root(greater(greater(squared_norm(rows[0]), squared_norm(rows[1])), squared_norm(rows[2])));
+}
+
+[[gnu::always_inline]] inline std::array<bool, 4> are_positive(const Four& a) {
+    return {a[0] > 0, a[1] > 0, a[2] > 0, a[3] > 0};
 }
 
 }  // namespace
 
 KROPLA_FOR_EACH_PROCESSOR
-void tet_aspect_ratios(const FourTets& tets, Four& ratios) { shape_of(tets, ratios); }
+FourNumbers tet_aspect_ratios(const FourPlaces& tets) {
+    FourNumbers ratios;
+    shape_of(gathered(tets), ratios);
+    return ratios;
+}
 
 KROPLA_FOR_EACH_PROCESSOR
-void tet_aspect_ratios(const FourPlaces& tets, Four& ratios) { shape_of(gathered(tets), ratios); }
+RatiosAndEnergies tet_energies(const FourPlaces& tets) {
+    RatiosAndEnergies result;
+    const auto shape = shape_of(gathered(tets), result.ratios);
+    const Four ratios = four_of(result.ratios);
+    store(shape.v6 / 6 * (ratios * ratios) * (ratios * ratios), result.energies);
+    return result;
+}
+
+std::vector<FourFacets> by_fours(std::span<const StarFacet> star) {
+    std::vector<FourFacets> fours((star.size() + 3) / 4);
+    for (std::size_t i = 0; i < 4 * fours.size(); ++i) {
+        const auto& [a, b, c] = star[std::min(i, star.size() - 1)];
+        const std::array<double, 9> coordinates = {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z};
+        for (std::size_t k = 0; k < 9; ++k) fours[i / 4].coordinates[k][i % 4] = coordinates[k];
+    }
+    return fours;
+}
 
 KROPLA_FOR_EACH_PROCESSOR
-void tet_aspect_ratios(const FourPlaces& tets, Four& ratios, Four& energies) {
-    const auto shape = shape_of(gathered(tets), ratios);
-    energies = shape.v6 / 6 * (ratios * ratios) * (ratios * ratios);
+void find_ratios(FourFacets& facets, const Vec3& x) {
+    const auto& all = facets.coordinates;
+    const auto corner = [&](std::size_t k) {
+        return FourVec3{four_of(all[k]), four_of(all[k + 1]), four_of(all[k + 2])};
+    };
+    shape_of({four_times(x), corner(0), corner(3), corner(6)}, facets.ratios);
+}
+
+KROPLA_FOR_EACH_PROCESSOR
+std::array<bool, 4> have_edge_out_of(SquaredBounds bounds, const FourPlaces& tets,
+                                     const std::array<FourNumbers, 4>& sizes) {
+    const auto [a, b, c, d] = gathered(tets);
+    const std::array<FourVec3, 4> x = {a, b, c, d};
+    Four beyond = -1;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = i + 1; j < 4; ++j) {
+            const Four size = (four_of(sizes[i]) + four_of(sizes[j])) / 2, square = squared_norm(x[i] - x[j]);
+            const Four too_long = square - bounds.most * (size * size);
+            const Four too_short = bounds.least * (size * size) - square;
+            beyond = greater(beyond, greater(too_long, too_short));
+        }
+    return are_positive(beyond);
+}
+
+// A determinant of rows that are no longer than L and change by no more than D changes by at most (L + D)^3 - L^3 [by
+// Hadamard's inequality for each of its terms].
+KROPLA_FOR_EACH_PROCESSOR
+std::array<bool, 4> surely_keep_volume(const FourPlaces& from, const FourPlaces& to, double least) {
+    const FourTets start = gathered(from), end = gathered(to);
+    const std::array<FourVec3, 3> e = {start.b - start.a, start.c - start.a, start.d - start.a};
+    const FourVec3 da = end.a - start.a;
+    const std::array<FourVec3, 3> de = {end.b - start.b - da, end.c - start.c - da, end.d - start.d - da};
+    const Four l = longest(e), d = longest(de);
+    return are_positive((1 - least) * determinant(e[0], e[1], e[2]) - d * (3 * l * (l + d) + d * d));
 }
 
 // As above with corner b as the origin, so that of u, v, w only u = a - b moves with a; F = |m| N / (2 V6^2),

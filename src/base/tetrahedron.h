@@ -1,8 +1,10 @@
 #pragma once
 
-#include "base/four.h"
+#include <kropla/base/vec3.h>
 
 #include <array>
+#include <span>
+#include <vector>
 
 namespace kropla {
 
@@ -13,26 +15,44 @@ namespace kropla {
 /// positively oriented by the exact predicate, and where a corner is not finite; never not a number.
 [[nodiscard]] double tet_aspect_ratio(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// The corners of four tets.
-struct FourTets {
-    FourVec3 a, b, c, d;
-};
-/// The same, where they are: per tet, per corner.
+// The same of four tets at once, bit for bit as one by one.
+
+using FourNumbers = std::array<double, 4>;
+/// Where the corners are: per tet, per corner.
 using FourPlaces = std::array<std::array<const Vec3*, 4>, 4>;
 
-/// A part of what calls it, so that it is compiled for the same processor.
-[[gnu::always_inline]] inline FourTets gathered(const FourPlaces& tets) {
-    const auto corner = [&](std::size_t k) {
-        return four_of(*tets[0][k], *tets[1][k], *tets[2][k], *tets[3][k]);
-    };
-    return {corner(0), corner(1), corner(2), corner(3)};
-}
+[[nodiscard]] FourNumbers tet_aspect_ratios(const FourPlaces& tets);
 
-/// Their aspect ratios, bit for bit as one by one.
-void tet_aspect_ratios(const FourTets& tets, Four& ratios);
-void tet_aspect_ratios(const FourPlaces& tets, Four& ratios);
-/// The same, and the energies [m^3] of those that are positively oriented: volume times the fourth power of R/r.
-void tet_aspect_ratios(const FourPlaces& tets, Four& ratios, Four& energies);
+/// The aspect ratios, and the energies [m^3] of those that are positively oriented: volume times the fourth power of R/r.
+struct RatiosAndEnergies {
+    FourNumbers ratios, energies;
+};
+[[nodiscard]] RatiosAndEnergies tet_energies(const FourPlaces& tets);
+
+/// A facet of a star-shaped polyhedron, by its corners, seen counter-clockwise from outside: with a point x
+/// inside it makes the tet (x, a, b, c).
+struct StarFacet {
+    Vec3 a, b, c;
+};
+/// Four of them, each coordinate side by side, and the aspect ratios of the tets that they made with the last point.
+struct FourFacets {
+    std::array<FourNumbers, 9> coordinates;
+    FourNumbers ratios;
+};
+/// All facets of a star; the last one also fills the last four up.
+[[nodiscard]] std::vector<FourFacets> by_fours(std::span<const StarFacet> star);
+void find_ratios(FourFacets& facets, const Vec3& x);
+
+/// Which of the tets have an edge whose squared length is out of bounds, in squares of the mean of the sizes at its two
+/// ends, which are given per corner, per tet. What is not a number is out of none.
+struct SquaredBounds {
+    double least, most;
+};
+[[nodiscard]] std::array<bool, 4> have_edge_out_of(SquaredBounds bounds, const FourPlaces& tets,
+                                                   const std::array<FourNumbers, 4>& sizes);
+
+/// Which of the tets keep the share `least` of their volume, without doubt, as their corners go along straight lines.
+[[nodiscard]] std::array<bool, 4> surely_keep_volume(const FourPlaces& from, const FourPlaces& to, double least);
 
 /// R/r and its gradient with respect to the first vertex [1/m].
 struct AspectGradient {

@@ -25,7 +25,6 @@ namespace {
 
 using Triangle = std::array<int, 3>;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr std::size_t next(std::size_t corner) { return (corner + 1) % 3; }
 
 /// Triangles that are looked at before they become a surface.
@@ -33,7 +32,7 @@ struct Draft {
     std::span<const Vec3> points;
     std::span<Triangle> triangles;
 
-    [[nodiscard]] const Vec3& corner(std::size_t t, std::size_t i) const { return points[at(triangles[t][i])]; }
+    [[nodiscard]] const Vec3& corner(std::size_t t, std::size_t i) const { return points[as_size(triangles[t][i])]; }
     [[nodiscard]] Corners corners(std::size_t t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
 };
 
@@ -46,7 +45,7 @@ std::string triangle_words(const Draft& d, std::size_t t) {
     return "triangle " + std::to_string(t) + " at " + place_words((a + b + c) / 3);
 }
 std::string point_words(const Draft& d, int point) {
-    return "point " + std::to_string(point) + " at " + place_words(d.points[at(point)]);
+    return "point " + std::to_string(point) + " at " + place_words(d.points[as_size(point)]);
 }
 std::string edge_words(const Draft& d, int a, int b) {
     return "the edge from " + point_words(d, a) + " to " + point_words(d, b);
@@ -68,7 +67,7 @@ void check_values(const Draft& d) {
         if (!is_finite(d.points[i])) refuse("has a point that is not finite: point " + std::to_string(i));
     for (std::size_t t = 0; t < d.triangles.size(); ++t) {
         for (int corner : d.triangles[t])
-            if (corner < 0 || at(corner) >= d.points.size())
+            if (corner < 0 || as_size(corner) >= d.points.size())
                 refuse("has a triangle " + std::to_string(t) + " with a point " + std::to_string(corner) +
                        ", which does not exist: there are " + std::to_string(d.points.size()));
         if (is_flat(d.corners(t))) refuse("has a triangle of no area: " + triangle_words(d, t));
@@ -118,11 +117,11 @@ void check_rings(const Draft& d, const Neighbours& beyond) {
     std::vector<std::size_t> corners_at(d.points.size(), 0);
     std::vector<char> is_known(d.points.size(), 0);
     for (const Triangle& triangle : d.triangles)
-        for (int point : triangle) ++corners_at[at(point)];
+        for (int point : triangle) ++corners_at[as_size(point)];
     for (std::size_t t = 0; t < d.triangles.size(); ++t)
         for (std::size_t i = 0; i < 3; ++i) {
             const int point = d.triangles[t][i];
-            if (std::exchange(is_known[at(point)], 1) != 0) continue;
+            if (std::exchange(is_known[as_size(point)], 1) != 0) continue;
             std::size_t around = 0;
             Beyond here{t, i};  // the edge that begins at the point
             do {
@@ -130,7 +129,7 @@ void check_rings(const Draft& d, const Neighbours& beyond) {
                 here = {there.triangle, next(there.edge)};
                 ++around;
             } while (here.triangle != t);
-            if (around != corners_at[at(point)]) refuse("touches itself at " + point_words(d, point));
+            if (around != corners_at[as_size(point)]) refuse("touches itself at " + point_words(d, point));
         }
 }
 
@@ -238,7 +237,7 @@ TriangulatedSurface::TriangulatedSurface(std::vector<Vec3> points, std::vector<T
         for (std::size_t i = 0; i < 3; ++i) {
             extent_.take_in(corners[i]);
             farthest_ = std::max(farthest_, norm(corners[i]));
-            corner_normal_[at(this->triangles()[t][i])] +=
+            corner_normal_[as_size(this->triangles()[t][i])] +=
                 angle_between(corners[next(i)] - corners[i], corners[next(next(i))] - corners[i]) * inside_normal_[t];
         }
     }
@@ -251,7 +250,7 @@ double TriangulatedSurface::signed_distance(const Vec3& x) const {
         const auto part = static_cast<std::size_t>(nearest.part);
         if (part == 0) return inside_normal_[nearest.triangle];
         if (part <= 3) return edge_normal_[nearest.triangle][part - 1];
-        return corner_normal_[at(triangles()[nearest.triangle][part - 4])];
+        return corner_normal_[as_size(triangles()[nearest.triangle][part - 4])];
     };
     const double far = std::sqrt(nearest.squared_distance);
     return dot(x - nearest.point, outwards()) < 0 ? -far : far;

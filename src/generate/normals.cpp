@@ -9,6 +9,8 @@
 
 #include "generate/normals.h"
 
+#include <kropla/base/index.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,8 +18,6 @@
 namespace kropla {
 
 namespace {
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// What stands at each point of the surface.
 struct Rings {
@@ -30,18 +30,18 @@ Rings rings(std::size_t points, std::span<const std::array<int, 3>> triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
             const int v = triangles[t][i];
             // the next corner only: so each neighbour is there once, as the surface is closed
-            found.points[at(v)].push_back(triangles[t][(i + 1) % 3]);
-            found.triangles[at(v)].push_back(static_cast<int>(t));
+            found.points[as_size(v)].push_back(triangles[t][(i + 1) % 3]);
+            found.triangles[as_size(v)].push_back(static_cast<int>(t));
         }
     return found;
 }
 
 std::vector<int> fitted_points(const Rings& around, int v) {
     constexpr std::size_t unknowns = 5;
-    std::vector<int> found = around.points[at(v)];
+    std::vector<int> found = around.points[as_size(v)];
     if (found.size() >= unknowns) return found;
-    for (int w : around.points[at(v)])
-        found.insert(found.end(), around.points[at(w)].begin(), around.points[at(w)].end());
+    for (int w : around.points[as_size(v)])
+        found.insert(found.end(), around.points[as_size(w)].begin(), around.points[as_size(w)].end());
     std::ranges::sort(found);
     found.erase(std::unique(found.begin(), found.end()), found.end());
     std::erase(found, v);
@@ -110,19 +110,19 @@ std::vector<Vec3> surface_normals(std::span<const Vec3> points,
     const Rings around = rings(points.size(), triangles);
     std::vector<Vec3> normals, sides, others;
     for (int v = 0; v < static_cast<int>(points.size()); ++v) {
-        const Vec3& p = points[at(v)];
+        const Vec3& p = points[as_size(v)];
         sides.clear();
         Vec3 mean;
-        for (int t : around.triangles[at(v)]) {
-            const auto& corners = triangles[at(t)];
+        for (int t : around.triangles[as_size(v)]) {
+            const auto& corners = triangles[as_size(t)];
             const auto here = static_cast<std::size_t>(std::ranges::find(corners, v) - corners.begin());
-            const Vec3 a = points[at(corners[(here + 1) % 3])] - p,
-                       b = points[at(corners[(here + 2) % 3])] - p;
+            const Vec3 a = points[as_size(corners[(here + 1) % 3])] - p,
+                       b = points[as_size(corners[(here + 2) % 3])] - p;
             sides.push_back(normalised(cross(a, b)));
             mean += std::atan2(norm(cross(a, b)), dot(a, b)) * sides.back();
         }
         others.clear();
-        for (int w : fitted_points(around, v)) others.push_back(points[at(w)]);
+        for (int w : fitted_points(around, v)) others.push_back(points[as_size(w)]);
         normals.push_back(made_to_see(quadric_normal(p, normalised(mean), others), sides));
     }
     return normals;

@@ -38,6 +38,7 @@
 #include <new>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 
 namespace kropla {
 namespace {
@@ -457,6 +458,8 @@ Frame read_vtu(const std::filesystem::path& path, const Watch* watch) {
     FileCells cells = read_heeding(path, watch);
     try {
         return make_frame(std::move(cells));
+    } catch (const std::invalid_argument& error) {
+        fail(path, error.what());
     } catch (const FileError& error) {
         fail(path, error.what());
     }

@@ -45,8 +45,8 @@ struct Frame {
 
 /// The mesh of these cells. A VTU file does not know patches: boundary facets get that of the face of the
 /// bounding box in which they lie, exactly by coordinates, or of the layer whose wall or shell they are, else
-/// patch 0. The cells are not checked: see `verify`. Throws FileError as make_mesh and attach_layers, naming the
-/// cell but not the file.
+/// patch 0. The cells are not checked: see `verify`. Throws std::invalid_argument as make_mesh, FileError
+/// as attach_layers, naming the cell but not the file.
 [[nodiscard]] Frame make_frame(FileCells cells);
 
 /// Both in one; all errors name the file. Throws Interrupted if the watch says so.

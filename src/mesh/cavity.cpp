@@ -8,8 +8,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// A facet of a removed or of an added tet, in two words, as many are sorted: its vertices in ascending order;
 /// whether its tet is added; which of the removed or added ones that is; its corner.
 struct Side {
@@ -40,13 +38,15 @@ struct Join {
 };
 
 std::array<Vertex, 3> ascending(const std::array<Vertex, 4>& v, int corner) {
-    const auto& c = tet_facets[at(corner)];
-    std::array<Vertex, 3> key = {v[at(c[0])], v[at(c[1])], v[at(c[2])]};
+    auto key = facet_vertices(v, corner);
     if (key[1] < key[0]) std::swap(key[0], key[1]);
     if (key[2] < key[1]) std::swap(key[1], key[2]);
     if (key[1] < key[0]) std::swap(key[0], key[1]);
     return key;
 }
+
+/// The number of a vertex that is inserted, by its name in the proposal.
+std::size_t number_inserted(Vertex name) { return as_size(inserted_vertex(0).value - name.value); }
 
 /// The removed tets in ascending order. Throws if the proposal names what does not exist.
 std::vector<Tet> checked_cells(const Mesh& mesh, const Cavity& cavity) {
@@ -55,13 +55,9 @@ std::vector<Tet> checked_cells(const Mesh& mesh, const Cavity& cavity) {
     const bool twice = std::ranges::adjacent_find(removed) != removed.end();
     if (twice || !std::ranges::all_of(removed, [&](Tet t) { return alive(mesh, t); }))
         throw std::logic_error("replace_cells: a cell is removed that does not exist, or twice");
-    const std::size_t taken = std::min(cavity.inserted.size(), mesh.free_vertices.size());
-    const auto first_taken = mesh.free_vertices.end() - static_cast<std::ptrdiff_t>(taken);
-    const std::size_t size = mesh.position.size() + cavity.inserted.size() - taken;
     const auto exists = [&](Vertex v) {
-        if (!v.exists() || at(v.value) >= size) return false;
-        if (at(v.value) >= mesh.position.size() || alive(mesh, v)) return true;
-        return std::find(first_taken, mesh.free_vertices.end(), v) != mesh.free_vertices.end();
+        if (!v.exists()) return v != Vertex{} && number_inserted(v) < cavity.inserted.size();
+        return as_size(v.value) < mesh.position.size() && alive(mesh, v);
     };
     for (const NewTet& tet : cavity.added)
         if (!std::ranges::all_of(tet.vertices, exists))
@@ -75,7 +71,7 @@ std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity, std::span
     sides.reserve(4 * (cavity.removed.size() + cavity.added.size()));
     for (int corner = 0; corner < 4; ++corner) {
         for (std::size_t i = 0; i < cavity.removed.size(); ++i)
-            if (!std::ranges::binary_search(removed, mesh.neighbour[cavity.removed[i]][at(corner)]))
+            if (!std::ranges::binary_search(removed, mesh.neighbour[cavity.removed[i]][as_size(corner)]))
                 sides.emplace_back(ascending(mesh.tets[cavity.removed[i]], corner), false, i, corner);
         for (std::size_t i = 0; i < cavity.added.size(); ++i)
             sides.emplace_back(ascending(cavity.added[i].vertices, corner), true, i, corner);
@@ -85,7 +81,7 @@ std::vector<Side> sides_by_key(const Mesh& mesh, const Cavity& cavity, std::span
 }
 
 /// The slots that the added tets will take: those of removed tets, then free ones, then new ones.
-std::vector<Tet> slots(const Mesh& mesh, const Cavity& cavity) {
+std::vector<Tet> cell_slots(const Mesh& mesh, const Cavity& cavity) {
     std::vector<Tet> names;
     names.reserve(cavity.added.size());
     const std::size_t spare = mesh.free_tets.size();
@@ -110,17 +106,17 @@ void join_facet(const Mesh& mesh, const Cavity& cavity, std::span<const Side> be
         joins.push_back({after[1].which(), after[1].corner(), names[after[0].which()], -1, Patch{}});
     } else if (after.size() == 1 && before.size() == 1) {
         const Facet f = outer(before[0]);
-        const Tet n = mesh.neighbour[f.tet][at(f.corner)];
+        const Tet n = mesh.neighbour[f.tet][as_size(f.corner)];
         joins.push_back({after[0].which(), after[0].corner(), n, n.exists() ? mirror_corner(mesh, f) : -1,
-                         mesh.patch[f.tet][at(f.corner)]});
+                         mesh.patch[f.tet][as_size(f.corner)]});
     } else if (after.size() == 1) {
-        const Patch patch = cavity.added[after[0].which()].patch[at(after[0].corner())];
+        const Patch patch = cavity.added[after[0].which()].patch[as_size(after[0].corner())];
         if (!patch.exists())
             throw std::logic_error("replace_cells: an added facet has no other side and no patch");
         joins.push_back({after[0].which(), after[0].corner(), Tet{}, -1, patch});
     } else if (before.size() == 1) {
         const Facet f = outer(before[0]);
-        if (mesh.neighbour[f.tet][at(f.corner)].exists())
+        if (mesh.neighbour[f.tet][as_size(f.corner)].exists())
             throw std::logic_error("replace_cells: a facet around the cavity would be lost");
     }
 }
@@ -142,9 +138,25 @@ std::vector<Join> join_facets(const Mesh& mesh, const Cavity& cavity, std::span<
     return joins;
 }
 
-void insert_vertices(Mesh& mesh, const std::vector<Vec3>& places, std::vector<Vertex>& touched) {
+/// The slots that the inserted vertices will take: free ones, the last first, then new ones.
+std::vector<Vertex> vertex_slots(const Mesh& mesh, std::size_t count) {
+    std::vector<Vertex> names;
+    const std::size_t spare = mesh.free_vertices.size();
+    for (std::size_t k = 0; k < count; ++k)
+        names.push_back(k < spare ? mesh.free_vertices[spare - 1 - k] : Vertex(mesh.position.size() + k - spare));
+    return names;
+}
+
+/// The proposal with the names that its vertices will have in the mesh.
+Cavity with_names(Cavity cavity, std::span<const Vertex> names) {
+    for (NewTet& tet : cavity.added)
+        for (Vertex& v : tet.vertices)
+            if (!v.exists()) v = names[number_inserted(v)];
+    return cavity;
+}
+
+void insert_vertices(Mesh& mesh, const std::vector<Vec3>& places) {
     for (const Vec3& place : places) {
-        touched.push_back(next_vertex(mesh));
         if (mesh.free_vertices.empty()) {
             mesh.position.push_back(place);
             mesh.tet_at.push_back(Tet{});
@@ -196,27 +208,25 @@ void free_lost_vertices(Mesh& mesh, std::vector<Vertex>& touched) {
 
 }  // namespace
 
-Vertex next_vertex(const Mesh& mesh, std::size_t k) {
-    const std::size_t spare = mesh.free_vertices.size();
-    return k < spare ? mesh.free_vertices[spare - 1 - k] : Vertex(mesh.position.size() + k - spare);
-}
-
-std::vector<Tet> replace_cells(Mesh& mesh, const Cavity& cavity) {
-    const auto removed = checked_cells(mesh, cavity);
-    const auto names = slots(mesh, cavity);
+Replacement replace_cells(Mesh& mesh, const Cavity& proposal) {
+    const auto removed = checked_cells(mesh, proposal);
+    Replacement made{cell_slots(mesh, proposal), vertex_slots(mesh, proposal.inserted.size())};
+    const auto& names = made.cells;
+    const Cavity renamed = made.vertices.empty() ? Cavity{} : with_names(proposal, made.vertices);
+    const Cavity& cavity = made.vertices.empty() ? proposal : renamed;
     const auto joins = join_facets(mesh, cavity, removed, names);
 
-    std::vector<Vertex> touched;
+    std::vector<Vertex> touched = made.vertices;
     clear_removed(mesh, cavity, touched);
-    insert_vertices(mesh, cavity.inserted, touched);
+    insert_vertices(mesh, cavity.inserted);
     write_added(mesh, cavity, names);
     for (const Join& j : joins) {
-        mesh.neighbour[names[j.added]][at(j.corner)] = j.neighbour;
-        mesh.patch[names[j.added]][at(j.corner)] = j.patch;
-        if (j.neighbour_corner >= 0) mesh.neighbour[j.neighbour][at(j.neighbour_corner)] = names[j.added];
+        mesh.neighbour[names[j.added]][as_size(j.corner)] = j.neighbour;
+        mesh.patch[names[j.added]][as_size(j.corner)] = j.patch;
+        if (j.neighbour_corner >= 0) mesh.neighbour[j.neighbour][as_size(j.neighbour_corner)] = names[j.added];
     }
     free_lost_vertices(mesh, touched);
-    return names;
+    return made;
 }
 
 }  // namespace kropla

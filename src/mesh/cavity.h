@@ -16,9 +16,13 @@ struct NewTet {
     std::array<Patch, 4> patch = {};
 };
 
+/// What the cells of a proposal call the k-th vertex that it inserts. No vertex of a mesh has such a name, so that a
+/// proposal stays as it is whatever else is carried out before it.
+[[nodiscard]] constexpr Vertex inserted_vertex(std::size_t k) { return Vertex(-2 - static_cast<std::int32_t>(k)); }
+
 /// A proposed change of connectivity: cells to be replaced, cells to take their place, and what it would do
-/// to the worst aspect ratio R/r among them. `inserted` are the places of new vertices, which will be named
-/// next_vertex(mesh, 0), next_vertex(mesh, 1), ...; vertices left without a cell are removed.
+/// to the worst aspect ratio R/r among them. `inserted` are the places of new vertices, called
+/// inserted_vertex(0), inserted_vertex(1), ...; vertices left without a cell are removed.
 ///
 /// It is legal if every added tet is positively oriented (exact predicate), the facets around the cavity
 /// stay, and no constrained vertex, edge or facet is lost.
@@ -30,13 +34,15 @@ struct Cavity {
     double worst_after = 0;
 };
 
-/// The name that the k-th next inserted vertex will get.
-[[nodiscard]] Vertex next_vertex(const Mesh& mesh, std::size_t k = 0);
-
-/// Carries out a legal proposal: the only function that changes the connectivity of a mesh. Returns the added
-/// tets, in the order of the proposal. Work is proportional to the cavity.
+/// What a proposal has become, in its order.
+struct Replacement {
+    std::vector<Tet> cells;        // those added
+    std::vector<Vertex> vertices;  // those inserted
+};
+/// Carries out a legal proposal: the only function that changes the connectivity of a mesh. Work is proportional to the
+/// cavity. New cells take the slots of those removed, then free ones, then new ones; new vertices free ones, then new ones.
 /// Throws std::logic_error, the mesh untouched, if the facets of the cavity would not close, or if it names
 /// cells or vertices that do not exist: a mistake of the operator.
-std::vector<Tet> replace_cells(Mesh& mesh, const Cavity& cavity);
+Replacement replace_cells(Mesh& mesh, const Cavity& cavity);
 
 }  // namespace kropla

@@ -24,7 +24,7 @@ struct Triangle {
 };
 
 Triangle triangle_of(const Mesh& mesh, Facet f) {
-    Triangle t{facet_vertices(mesh, f), {}, mesh.position[mesh.tets[f.tet][static_cast<std::size_t>(f.corner)]]};
+    Triangle t{facet_vertices(mesh, f), {}, mesh.position[mesh.tets[f.tet][as_size(f.corner)]]};
     for (std::size_t i = 0; i < 3; ++i) t.place[i] = mesh.position[t.vertices[i]];
     return t;
 }
@@ -122,7 +122,7 @@ std::vector<Facet> boundary_facets(const Mesh& mesh) {
     std::vector<Facet> facets;
     for (const Tet t : mesh.tets.indices())
         for (int corner = 0; corner < 4 && alive(mesh, t); ++corner)
-            if (!mesh.neighbour[t][static_cast<std::size_t>(corner)].exists()) facets.push_back({t, corner});
+            if (!mesh.neighbour[t][as_size(corner)].exists()) facets.push_back({t, corner});
     return facets;
 }
 

@@ -43,7 +43,7 @@ public:
             if (page_at_[page] == 0) continue;
             for (std::size_t word = 0; word < words; ++word)
                 for (std::uint64_t left = pages_[page_at_[page]][word]; left != 0; left &= left - 1)
-                    visit(I(64 * (words * page + word) + static_cast<std::size_t>(std::countr_zero(left))));
+                    visit(I(64 * (words * page + word) + as_size(std::countr_zero(left))));
         }
     }
 
@@ -58,8 +58,8 @@ private:
     static constexpr std::size_t words = 64;  // of a page
     using Page = std::array<std::uint64_t, words>;
 
-    static std::size_t page_of(I i) { return static_cast<std::size_t>(i.value) / (64 * words); }
-    static std::size_t word_of(I i) { return static_cast<std::size_t>(i.value) / 64 % words; }
+    static std::size_t page_of(I i) { return as_size(i.value) / (64 * words); }
+    static std::size_t word_of(I i) { return as_size(i.value) / 64 % words; }
     static std::uint64_t bit_of(I i) { return std::uint64_t{1} << (static_cast<unsigned>(i.value) % 64); }
 
     [[nodiscard]] const Page& page(I i) const {

@@ -1,10 +1,10 @@
 #include <kropla/mesh/mesh.h>
 
-#include <kropla/base/error.h>
-#include <kropla/mesh/cells.h>
+#include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 namespace kropla {
@@ -33,21 +33,17 @@ FacetGroups group_facets(const Mesh& mesh, std::span<const BoundaryFacet> bounda
     std::vector<FacetRecord> all;
     all.reserve(4 * mesh.tets.size() + boundary.size());
     for (Tet t : mesh.tets.indices())
-        for (int i = 0; i < 4; ++i) {
-            const auto& v = mesh.tets[t];
-            const auto& c = tet_facets[static_cast<std::size_t>(i)];
-            all.push_back({sorted({v[c[0]], v[c[1]], v[c[2]]}), t, i});
-        }
+        for (int i = 0; i < 4; ++i) all.push_back({sorted(facet_vertices(mesh.tets[t], i)), t, i});
     for (std::size_t i = 0; i < boundary.size(); ++i)
         all.push_back({sorted(boundary[i].vertices), Tet{}, static_cast<int>(i)});
 
     FacetGroups groups;
     groups.first.assign(mesh.position.size() + 1, 0);
-    for (const auto& r : all) ++groups.first[static_cast<std::size_t>(r.key[0].value) + 1];
+    for (const auto& r : all) ++groups.first[as_size(r.key[0].value) + 1];
     std::partial_sum(groups.first.begin(), groups.first.end(), groups.first.begin());
     auto next = groups.first;
     groups.records.resize(all.size());
-    for (const auto& r : all) groups.records[next[static_cast<std::size_t>(r.key[0].value)]++] = r;
+    for (const auto& r : all) groups.records[next[as_size(r.key[0].value)]++] = r;
     return groups;
 }
 
@@ -55,7 +51,7 @@ void check_vertices(const Mesh& mesh, std::span<const BoundaryFacet> boundary) {
     const auto vertices = static_cast<std::int32_t>(mesh.position.size());
     const auto check = [&](Vertex v, const char* what, auto number) {
         if (v.value < 0 || v.value >= vertices)
-            throw FileError(what + std::to_string(number) + " has vertex " + std::to_string(v.value) +
+            throw std::invalid_argument(what + std::to_string(number) + " has vertex " + std::to_string(v.value) +
                             ", but there are " + std::to_string(vertices) + " vertices");
     };
     for (Tet t : mesh.tets.indices())
@@ -71,27 +67,27 @@ void join(Mesh& mesh, std::span<const FacetRecord> same, std::span<const Boundar
     Patch patch{0};
     for (const auto& r : same) {
         if (!r.tet.exists()) {
-            patch = boundary[static_cast<std::size_t>(r.corner)].patch;
+            patch = boundary[as_size(r.corner)].patch;
             continue;
         }
         if (count == 2)
-            throw FileError("a facet of cell " + std::to_string(r.tet.value) + " already belongs to cells " +
+            throw std::invalid_argument("a facet of cell " + std::to_string(r.tet.value) + " already belongs to cells " +
                             std::to_string(cells[0]->tet.value) + " and " +
                             std::to_string(cells[1]->tet.value));
         cells[count++] = &r;
     }
     if (count == 2) {
-        mesh.neighbour[cells[0]->tet][static_cast<std::size_t>(cells[0]->corner)] = cells[1]->tet;
-        mesh.neighbour[cells[1]->tet][static_cast<std::size_t>(cells[1]->corner)] = cells[0]->tet;
+        mesh.neighbour[cells[0]->tet][as_size(cells[0]->corner)] = cells[1]->tet;
+        mesh.neighbour[cells[1]->tet][as_size(cells[1]->corner)] = cells[0]->tet;
     } else if (count == 1) {
-        mesh.patch[cells[0]->tet][static_cast<std::size_t>(cells[0]->corner)] = patch;
+        mesh.patch[cells[0]->tet][as_size(cells[0]->corner)] = patch;
     }
 }
 
 void find_neighbours(Mesh& mesh, std::span<const BoundaryFacet> boundary) {
     auto groups = group_facets(mesh, boundary);
     for (Vertex v : mesh.position.indices()) {
-        const auto i = static_cast<std::size_t>(v.value);
+        const auto i = as_size(v.value);
         const std::span group(groups.records.data() + groups.first[i], groups.first[i + 1] - groups.first[i]);
         std::ranges::stable_sort(group, {}, &FacetRecord::key);
         for (std::size_t begin = 0, end = 0; begin < group.size(); begin = end) {
@@ -166,8 +162,8 @@ Compacted reorder(const Mesh& mesh, Array<Vertex, Vertex> old_vertex, Array<Tet,
 
 namespace {
 
-bool has_slot(const Mesh& mesh, Tet t) { return static_cast<std::size_t>(t.value) < mesh.tets.size(); }
-bool has_slot(const Mesh& mesh, Vertex v) { return static_cast<std::size_t>(v.value) < mesh.position.size(); }
+bool has_slot(const Mesh& mesh, Tet t) { return as_size(t.value) < mesh.tets.size(); }
+bool has_slot(const Mesh& mesh, Vertex v) { return as_size(v.value) < mesh.position.size(); }
 
 void copy_vertex(Mesh& to, const Mesh& from, Vertex v) {
     if (!has_slot(from, v)) return;

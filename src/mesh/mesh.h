@@ -75,7 +75,7 @@ struct BoundaryFacet {
 /// Builds a mesh from cells by their vertices; neighbours are found by sorting facets. Boundary facets that
 /// are not in `boundary` get patch 0. Vertices of no tet become free slots. The tets are not checked: see
 /// `verify`.
-/// Throws FileError, naming the cell or boundary facet, if a facet has more than two cells or a vertex does
+/// Throws std::invalid_argument, naming the cell or boundary facet, if a facet has more than two cells or a vertex does
 /// not exist.
 [[nodiscard]] Mesh make_mesh(Array<Vertex, Vec3> position, Array<Tet, std::array<Vertex, 4>> tets,
                              Array<Tet, Region> region, std::span<const BoundaryFacet> boundary = {});

@@ -26,7 +26,7 @@ void add_layer(Mesh& mesh, PrismLayer layer) {
 
 std::vector<Prism> all_prisms(const Mesh& mesh) {
     std::vector<Prism> prisms;
-    prisms.reserve(static_cast<std::size_t>(count_prisms(mesh)));
+    prisms.reserve(as_size(count_prisms(mesh)));
     for (std::size_t l = 0; l < mesh.layers.size(); ++l)
         for (int triangle = 0; triangle < static_cast<int>(mesh.layers[l].triangles.size()); ++triangle)
             for (int k = 0; k < mesh.layers[l].count; ++k) prisms.push_back({Layer(l), triangle, k});
@@ -35,7 +35,7 @@ std::vector<Prism> all_prisms(const Mesh& mesh) {
 
 std::array<Vertex, 6> prism_vertices(const Mesh& mesh, const Prism& prism) {
     const PrismLayer& layer = layer_of(mesh, prism.layer);
-    const auto [a, b, c] = layer.triangles[static_cast<std::size_t>(prism.triangle)];
+    const auto [a, b, c] = layer.triangles[as_size(prism.triangle)];
     const auto at = [&](int column, int k) { return column_vertex(layer, column, k); };
     return {at(a, prism.k),     at(b, prism.k),     at(c, prism.k),
             at(a, prism.k + 1), at(b, prism.k + 1), at(c, prism.k + 1)};

@@ -14,7 +14,7 @@ struct Prism {
 };
 
 [[nodiscard]] inline const PrismLayer& layer_of(const Mesh& mesh, Layer l) {
-    return mesh.layers[static_cast<std::size_t>(l.value)];
+    return mesh.layers[as_size(l.value)];
 }
 
 /// The patches of the tets' boundary that a layer takes: at its wall, on the far side of the body's surface,
@@ -26,7 +26,7 @@ inline constexpr int most_layers = 13;  // patches go up to 31
 
 /// A vertex of a column: k = 0 on the wall ... count on the shell.
 [[nodiscard]] inline Vertex column_vertex(const PrismLayer& layer, int column, int k) {
-    return layer.columns[static_cast<std::size_t>(column * (layer.count + 1) + k)];
+    return layer.columns[as_size(column * (layer.count + 1) + k)];
 }
 [[nodiscard]] inline int count_columns(const PrismLayer& layer) {
     return static_cast<int>(layer.columns.size()) / (layer.count + 1);

@@ -6,8 +6,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The two corners of `t` that are neither `a` nor `b`, as vertices (c, d) with det(b-a, c-a, d-a) > 0.
 std::array<Vertex, 2> opposite_edge(const Mesh& mesh, Tet t, Vertex a, Vertex b) {
     // per ordered pair of corners (i, j), the others in the order that keeps the orientation
@@ -16,7 +14,7 @@ std::array<Vertex, 2> opposite_edge(const Mesh& mesh, Tet t, Vertex a, Vertex b)
                                             {{1, 3}, {3, 0}, {-1, -1}, {0, 1}},
                                             {{2, 1}, {0, 2}, {1, 0}, {-1, -1}}};
     const auto& o = others[corner_of(mesh, t, a)][corner_of(mesh, t, b)];
-    return {mesh.tets[t][at(o[0])], mesh.tets[t][at(o[1])]};
+    return {mesh.tets[t][as_size(o[0])], mesh.tets[t][as_size(o[1])]};
 }
 
 /// Walks around the edge from `start` across the facet opposite `leaving`, until the boundary or `start`
@@ -25,7 +23,7 @@ template <class Visit>
 bool walk_round(const Mesh& mesh, Edge e, Tet start, Vertex leaving, Vertex staying, Visit visit) {
     Tet t = start;
     for (;;) {
-        const Tet next = mesh.neighbour[t][at(corner_of(mesh, t, leaving))];
+        const Tet next = mesh.neighbour[t][as_size(corner_of(mesh, t, leaving))];
         if (!next.exists()) return false;
         if (next == start) return true;
         const auto [c, d] = opposite_edge(mesh, next, e.a, e.b);
@@ -44,14 +42,10 @@ int corner_of(const Mesh& mesh, Tet t, Vertex v) {
     return c[0] == v ? 0 : c[1] == v ? 1 : c[2] == v ? 2 : c[3] == v ? 3 : -1;
 }
 
-std::array<Vertex, 3> facet_vertices(const Mesh& mesh, Facet f) {
-    const auto& v = mesh.tets[f.tet];
-    const auto& c = tet_facets[at(f.corner)];
-    return {v[at(c[0])], v[at(c[1])], v[at(c[2])]};
-}
+std::array<Vertex, 3> facet_vertices(const Mesh& mesh, Facet f) { return facet_vertices(mesh.tets[f.tet], f.corner); }
 
 int mirror_corner(const Mesh& mesh, Facet f) {
-    const auto& across = mesh.neighbour[mesh.neighbour[f.tet][at(f.corner)]];
+    const auto& across = mesh.neighbour[mesh.neighbour[f.tet][as_size(f.corner)]];
     return across[0] == f.tet ? 0 : across[1] == f.tet ? 1 : across[2] == f.tet ? 2 : 3;
 }
 
@@ -73,7 +67,7 @@ public:
     /// Whether `t` is not in the list yet; it is about to be.
     bool add(Tet t) {
         if (list_.size() >= room) return std::ranges::find(list_, t) == list_.end();
-        std::size_t slot = static_cast<std::size_t>(t.value) % slots_.size();
+        std::size_t slot = as_size(t.value) % slots_.size();
         for (; slots_[slot].exists(); slot = (slot + 1) % slots_.size())
             if (slots_[slot] == t) return false;
         slots_[slot] = t;
@@ -97,8 +91,8 @@ void ball(const Mesh& mesh, Vertex v, std::vector<Tet>& tets) {
     for (std::size_t i = 0; i < tets.size(); ++i) {
         const Tet t = tets[i];
         for (int corner = 0; corner < 4; ++corner) {
-            const Tet n = mesh.neighbour[t][at(corner)];
-            if (n.exists() && mesh.tets[t][at(corner)] != v && seen.add(n)) tets.push_back(n);
+            const Tet n = mesh.neighbour[t][as_size(corner)];
+            if (n.exists() && mesh.tets[t][as_size(corner)] != v && seen.add(n)) tets.push_back(n);
         }
     }
 }
@@ -166,8 +160,8 @@ Constraint constraint(const Mesh& mesh, Vertex v, std::span<const Tet> ball) {
     for (Tet t : ball) {
         c.on_interface |= mesh.region[t] != mesh.region[ball.front()];
         for (int i = 0; i < 4; ++i) {
-            const Patch p = mesh.patch[t][at(i)];
-            if (p.exists() && mesh.tets[t][at(i)] != v) c.patches |= 1u << p.value;
+            const Patch p = mesh.patch[t][as_size(i)];
+            if (p.exists() && mesh.tets[t][as_size(i)] != v) c.patches |= 1u << p.value;
         }
     }
     return c;
@@ -180,8 +174,8 @@ Constraint constraint(const Mesh& mesh, const Shell& shell) {
     // The two facets where the shell ends are the only ones of the boundary that hold the edge.
     const Tet first = shell.tets.front(), last = shell.tets.back();
     const Vertex after_first = shell.ring[1], before_last = shell.ring[shell.ring.size() - 2];
-    c.patches |= 1u << mesh.patch[first][at(corner_of(mesh, first, after_first))].value;
-    c.patches |= 1u << mesh.patch[last][at(corner_of(mesh, last, before_last))].value;
+    c.patches |= 1u << mesh.patch[first][as_size(corner_of(mesh, first, after_first))].value;
+    c.patches |= 1u << mesh.patch[last][as_size(corner_of(mesh, last, before_last))].value;
     return c;
 }
 

@@ -24,6 +24,17 @@ struct Facet {
 
 /// The three vertices of the facet, their normal (right hand) pointing out of its tet.
 [[nodiscard]] std::array<Vertex, 3> facet_vertices(const Mesh& mesh, Facet f);
+/// The same of a tet by its vertices, opposite `corner`.
+[[nodiscard]] inline std::array<Vertex, 3> facet_vertices(const std::array<Vertex, 4>& tet, int corner) {
+    const auto [i, j, k] = tet_facets[as_size(corner)];
+    return {tet[as_size(i)], tet[as_size(j)], tet[as_size(k)]};
+}
+
+/// Edge k of the tet, numbered as in cells.h.
+[[nodiscard]] inline Edge tet_edge(const Mesh& mesh, Tet t, std::size_t k) {
+    const auto [i, j] = tet_edges[k];
+    return {mesh.tets[t][as_size(i)], mesh.tets[t][as_size(j)]};
+}
 
 /// The corner of `neighbour` that faces the facet `f`, across which it lies.
 [[nodiscard]] int mirror_corner(const Mesh& mesh, Facet f);

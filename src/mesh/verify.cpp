@@ -16,8 +16,6 @@ namespace {
 
 constexpr Patch last_patch{31};  // a Constraint has a bit for each
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::string place(const Vec3& x) {
     char text[96];
     std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", x.x, x.y, x.z);
@@ -44,14 +42,14 @@ std::string fault_of_indices(const Mesh& mesh) {
         if (!alive(mesh, t)) continue;
         const auto& v = mesh.tets[t];
         for (int i = 0; i < 4; ++i) {
-            if (v[at(i)].value < 0 || at(v[at(i)].value) >= mesh.position.size())
-                return "cell " + std::to_string(t.value) + " has vertex " + std::to_string(v[at(i)].value) +
+            if (v[as_size(i)].value < 0 || as_size(v[as_size(i)].value) >= mesh.position.size())
+                return "cell " + std::to_string(t.value) + " has vertex " + std::to_string(v[as_size(i)].value) +
                        ", which does not exist";
             for (int j = 0; j < i; ++j)
-                if (v[at(i)] == v[at(j)])
-                    return cell(mesh, t) + " has vertex " + std::to_string(v[at(i)].value) + " twice";
-            if (!is_finite(mesh.position[v[at(i)]]))
-                return "vertex " + std::to_string(v[at(i)].value) + " has no finite place";
+                if (v[as_size(i)] == v[as_size(j)])
+                    return cell(mesh, t) + " has vertex " + std::to_string(v[as_size(i)].value) + " twice";
+            if (!is_finite(mesh.position[v[as_size(i)]]))
+                return "vertex " + std::to_string(v[as_size(i)].value) + " has no finite place";
         }
         if (!mesh.region[t].exists()) return cell(mesh, t) + " is of no region";
     }
@@ -71,22 +69,22 @@ std::string fault_of_orientation(const Mesh& mesh) {
 }
 
 std::string fault_of_facet(const Mesh& mesh, Tet t, int i) {
-    const Tet n = mesh.neighbour[t][at(i)];
-    const bool on_boundary = mesh.patch[t][at(i)].exists();
-    if (mesh.patch[t][at(i)] > last_patch)
+    const Tet n = mesh.neighbour[t][as_size(i)];
+    const bool on_boundary = mesh.patch[t][as_size(i)].exists();
+    if (mesh.patch[t][as_size(i)] > last_patch)
         return cell(mesh, t) + ": " + facet(i) + " is of patch " +
-               std::to_string(mesh.patch[t][at(i)].value) + ", above " + std::to_string(last_patch.value);
+               std::to_string(mesh.patch[t][as_size(i)].value) + ", above " + std::to_string(last_patch.value);
     if (!n.exists() && on_boundary) return {};
     if (!n.exists()) return cell(mesh, t) + ": " + facet(i) + " has neither neighbour nor patch";
     if (on_boundary) return cell(mesh, t) + ": " + facet(i) + " has both a neighbour and a patch";
-    if (at(n.value) >= mesh.tets.size() || !alive(mesh, n))
+    if (as_size(n.value) >= mesh.tets.size() || !alive(mesh, n))
         return cell(mesh, t) + ": across " + facet(i) + " is no cell";
     int shared = 0, mirror = -1;
     for (int j = 0; j < 4; ++j) {
-        if (j != i && corner_of(mesh, n, mesh.tets[t][at(j)]) >= 0) ++shared;
-        if (mesh.neighbour[n][at(j)] == t) mirror = j;
+        if (j != i && corner_of(mesh, n, mesh.tets[t][as_size(j)]) >= 0) ++shared;
+        if (mesh.neighbour[n][as_size(j)] == t) mirror = j;
     }
-    if (shared != 3 || mirror < 0 || corner_of(mesh, t, mesh.tets[n][at(mirror)]) >= 0)
+    if (shared != 3 || mirror < 0 || corner_of(mesh, t, mesh.tets[n][as_size(mirror)]) >= 0)
         return cell(mesh, t) + ": its neighbour cell " + std::to_string(n.value) + " across " + facet(i) +
                " does not share that facet";
     return {};
@@ -105,7 +103,7 @@ std::string fault_of_shared_facets(const Mesh& mesh) {
     std::vector<std::pair<std::array<Vertex, 3>, Tet>> facets;
     for (Tet t : mesh.tets.indices())
         for (int i = 0; i < 4 && alive(mesh, t); ++i) {
-            if (mesh.neighbour[t][at(i)] > t) continue;  // once, from the later of its two cells
+            if (mesh.neighbour[t][as_size(i)] > t) continue;  // once, from the later of its two cells
             auto key = facet_vertices(mesh, {t, i});
             std::ranges::sort(key);
             facets.emplace_back(key, t);
@@ -130,7 +128,7 @@ std::string fault_of_vertices(const Mesh& mesh) {
             if (cells[v] == 0) continue;
             return name + " at " + place(mesh.position[v]) + " has cells but none is recorded";
         }
-        if (at(mesh.tet_at[v].value) >= mesh.tets.size() || corner_of(mesh, mesh.tet_at[v], v) < 0)
+        if (as_size(mesh.tet_at[v].value) >= mesh.tets.size() || corner_of(mesh, mesh.tet_at[v], v) < 0)
             return name + ": the cell recorded for it does not have it";
         ball(mesh, v, around);
         if (static_cast<int>(around.size()) != cells[v])
@@ -145,7 +143,7 @@ std::string fault_of_list(const Mesh& mesh, const std::vector<I>& list, const Ar
                           const char* what) {
     Array<I, int> listed(slots.size(), 0);
     for (I i : list) {
-        if (i.value < 0 || at(i.value) >= slots.size())
+        if (i.value < 0 || as_size(i.value) >= slots.size())
             return std::string("a free ") + what + " slot is listed that does not exist";
         ++listed[i];
     }
@@ -180,7 +178,7 @@ std::string fault_of_surfaces(const Mesh& mesh) {
     std::vector<SurfaceEdge> edges;
     for (Tet t : mesh.tets.indices())
         for (int i = 0; i < 4 && alive(mesh, t); ++i) {
-            const Tet n = mesh.neighbour[t][at(i)];
+            const Tet n = mesh.neighbour[t][as_size(i)];
             if (n.exists() && mesh.region[n] == mesh.region[t]) continue;
             append_edges(edges, mesh.region[t], facet_vertices(mesh, {t, i}));
             if (!n.exists()) append_edges(edges, Region{}, facet_vertices(mesh, {t, i}));

@@ -14,8 +14,6 @@ namespace {
 
 using Triangle = std::array<Vertex, 3>;
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::string named(Layer l) { return "layer " + std::to_string(l.value); }
 
 /// A triangle of vertices with its least one first, its turn kept.
@@ -28,12 +26,12 @@ std::string fault_of_stacks(const Mesh& mesh, Layer l) {
     const PrismLayer& layer = layer_of(mesh, l);
     if (layer.count < 1) return named(l) + " has no prisms in a column";
     if (!layer.region.exists() || !layer.body.exists()) return named(l) + " is of no region or body";
-    if (layer.columns.empty() || layer.columns.size() % at(layer.count + 1) != 0)
+    if (layer.columns.empty() || layer.columns.size() % as_size(layer.count + 1) != 0)
         return named(l) + " has " + std::to_string(layer.columns.size()) +
                " column vertices, no multiple of " + std::to_string(layer.count + 1);
     std::vector<Vertex> seen = layer.columns;
     std::ranges::sort(seen);
-    if (seen.front().value < 0 || at(seen.back().value) >= mesh.position.size())
+    if (seen.front().value < 0 || as_size(seen.back().value) >= mesh.position.size())
         return named(l) + " has a vertex in a column that does not exist";
     if (const auto twice = std::ranges::adjacent_find(seen); twice != seen.end())
         return named(l) + " has vertex " + std::to_string(twice->value) + " twice in its columns";
@@ -46,13 +44,13 @@ std::string fault_of_stacks(const Mesh& mesh, Layer l) {
 /// used.
 std::string fault_of_wall(const Mesh& mesh, Layer l) {
     const PrismLayer& layer = layer_of(mesh, l);
-    std::vector<char> used(at(count_columns(layer)), 0);
+    std::vector<char> used(as_size(count_columns(layer)), 0);
     std::vector<std::pair<int, int>> edges;
     for (const auto& triangle : layer.triangles)
         for (std::size_t i = 0; i < 3; ++i) {
             if (triangle[i] < 0 || triangle[i] >= count_columns(layer))
                 return named(l) + " has a triangle on a column that does not exist";
-            used[at(triangle[i])] = 1;
+            used[as_size(triangle[i])] = 1;
             edges.emplace_back(triangle[i], triangle[(i + 1) % 3]);
         }
     if (const auto unused = std::ranges::find(used, 0); unused != used.end())
@@ -89,7 +87,7 @@ PatchFacets facets_of_patch(const Mesh& mesh, Patch patch) {
     PatchFacets found;
     for (Tet t : all_tets(mesh))
         for (int i = 0; i < 4; ++i)
-            if (mesh.patch[t][at(i)] == patch) {
+            if (mesh.patch[t][as_size(i)] == patch) {
                 found.facets.push_back(turned(facet_vertices(mesh, {t, i})));
                 found.regions.push_back(mesh.region[t]);
             }
@@ -165,7 +163,7 @@ std::string fault_of_layer_at(const Mesh& mesh) {
 }  // namespace
 
 std::string fault_of_layers(const Mesh& mesh) {
-    if (mesh.layers.size() > at(most_layers))
+    if (mesh.layers.size() > as_size(most_layers))
         return "there are more than " + std::to_string(most_layers) + " layers";
     for (std::size_t l = 0; l < mesh.layers.size(); ++l)
         for (const auto check : {fault_of_stacks, fault_of_wall})

@@ -7,6 +7,8 @@
 
 #include "transfer/clip.h"
 
+#include <kropla/base/index.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +16,6 @@ namespace kropla {
 namespace {
 
 using Place = std::array<double, 3>;
-
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct Corner {
     const Place* place;
@@ -35,7 +35,7 @@ Place crossing(const Corner& inside, const Corner& outside) {
 /// the plane, are left out. `corner`: those inside first.
 void add_inside(TetPart& part, const std::array<Corner, 4>& corner, std::size_t inside) {
     const auto add = [&](const Place& a, const Place& b, const Place& c, const Place& d) {
-        part.tets[at(part.count++)] = {a, b, c, d};
+        part.tets[as_size(part.count++)] = {a, b, c, d};
     };
     const auto& [a, b, c, d] = corner;
     const Place ad = crossing(a, d);
@@ -71,7 +71,7 @@ bool cut(TetPart& part, const std::array<double, 4>& at_corners) {
     const Place slope = {at_corners[1] - start, at_corners[2] - start, at_corners[3] - start};
     bool any = false;
     for (int t = part.count - 1; t >= 0; --t) {  // those behind it are done
-        const auto& tet = part.tets[at(t)];
+        const auto& tet = part.tets[as_size(t)];
         std::array<double, 4> value;
         for (std::size_t k = 0; k < 4; ++k)
             value[k] = start + (slope[0] * tet[k][0] + slope[1] * tet[k][1] + slope[2] * tet[k][2]);
@@ -80,7 +80,7 @@ bool cut(TetPart& part, const std::array<double, 4>& at_corners) {
         if (least >= 0) continue;
         any = true;
         const auto whole = tet;
-        part.tets[at(t)] = part.tets[at(--part.count)];
+        part.tets[as_size(t)] = part.tets[as_size(--part.count)];
         if (most <= 0) continue;
         std::array<Corner, 4> corner;
         std::size_t inside = 0, end = 4;
@@ -95,7 +95,7 @@ TetMoments moments(const TetPart& part) {
     Place first{};
     std::array<double, 6> second{};  // 11, 12, 13, 22, 23, 33
     for (int t = 0; t < part.count; ++t) {
-        const auto& [a, b, c, d] = part.tets[at(t)];
+        const auto& [a, b, c, d] = part.tets[as_size(t)];
         Place u, v, w, sum;
         for (std::size_t k = 0; k < 3; ++k) {
             u[k] = b[k] - a[k];

@@ -14,8 +14,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 class Spreading {
 public:
     Spreading(const MassBlock& block, const ValueBounds& bounds, std::vector<double>& x)
@@ -29,10 +27,10 @@ public:
     /// Gives `excess` of the integral to the vertices, as far as they have room. Returns what is left of it.
     double give(double excess, std::span<const std::int32_t> to) {
         double capacity = 0;
-        for (std::int32_t i : to) capacity += block_.mass[at(i)] * room(at(i), excess);
+        for (std::int32_t i : to) capacity += block_.mass[as_size(i)] * room(as_size(i), excess);
         if (capacity == 0) return excess;
         const double share = std::min(1.0, excess / capacity);
-        for (std::int32_t i : to) x_[at(i)] += share * room(at(i), excess);
+        for (std::int32_t i : to) x_[as_size(i)] += share * room(as_size(i), excess);
         return share < 1 ? 0 : excess - capacity;
     }
 

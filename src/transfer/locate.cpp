@@ -11,8 +11,6 @@ namespace {
 constexpr double inside = -1e-9;   // a barycentric coordinate down to this is rounding
 constexpr int longest_walk = 500;  // steps; a walk in a mesh that is not Delaunay may go round in circles
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::array<double, 4> barycentric(const Mesh& mesh, Tet t, const Vec3& x) {
     const auto& v = mesh.tets[t];
     const Vec3 a = mesh.position[v[0]] - x, b = mesh.position[v[1]] - x, c = mesh.position[v[2]] - x,
@@ -24,7 +22,7 @@ std::array<double, 4> barycentric(const Mesh& mesh, Tet t, const Vec3& x) {
 }
 
 Tet across(const Mesh& mesh, Tet t, int corner) {
-    const Tet n = mesh.neighbour[t][at(corner)];
+    const Tet n = mesh.neighbour[t][as_size(corner)];
     return n.exists() && mesh.region[n] == mesh.region[t] ? n : Tet{};
 }
 

@@ -28,8 +28,6 @@ constexpr double covered = 1e-12;  // [-] of a cell's volume: its parts add up t
 constexpr double inside = -1e-9;   // a barycentric coordinate down to this is rounding
 constexpr int longest_walk = 200;  // steps
 
-constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 struct OldCell {
     std::array<Vertex, 4> vertices;
     std::array<Vec3, 4> inward;            // of the facet opposite corner i: normal, twice the area long
@@ -52,7 +50,7 @@ struct NewCell {
 /// cells at a facet get the same numbers, with opposite signs.
 void set_plane(const Mesh& mesh, OldCell& cell, int corner) {
     std::array<Vertex, 3> v;
-    for (std::size_t k = 0; k < 3; ++k) v[k] = cell.vertices[at(tet_facets[at(corner)][k])];
+    for (std::size_t k = 0; k < 3; ++k) v[k] = cell.vertices[as_size(tet_facets[as_size(corner)][k])];
     double sign = -1;  // tet_facets lists them with the normal pointing out
     const auto order = [&](std::size_t a, std::size_t b) {
         if (v[a] < v[b]) return;
@@ -63,7 +61,7 @@ void set_plane(const Mesh& mesh, OldCell& cell, int corner) {
     order(1, 2);
     order(0, 1);
     const Vec3 p = mesh.position[v[0]];
-    const std::size_t i = at(corner);
+    const std::size_t i = as_size(corner);
     cell.on[i] = p;
     cell.inward[i] = sign * cross(mesh.position[v[1]] - p, mesh.position[v[2]] - p);
     cell.inverse_height[i] = 1 / dot(cell.inward[i], mesh.position[cell.vertices[i]] - p);
@@ -81,16 +79,16 @@ public:
             cell.region = mesh.region[gone[i]];
             for (int corner = 0; corner < 4; ++corner) {
                 set_plane(mesh, cell, corner);
-                const Tet n = mesh.neighbour[gone[i]][at(corner)];
+                const Tet n = mesh.neighbour[gone[i]][as_size(corner)];
                 const bool same = n.exists() && mesh.region[n] == cell.region;
-                cell.across[at(corner)] = same ? index_.find(n.value) : -1;
+                cell.across[as_size(corner)] = same ? index_.find(n.value) : -1;
             }
         });
     }
-    [[nodiscard]] const OldCell& operator[](std::int32_t i) const { return cells_[at(i)]; }
+    [[nodiscard]] const OldCell& operator[](std::int32_t i) const { return cells_[as_size(i)]; }
     [[nodiscard]] std::int32_t size() const { return static_cast<std::int32_t>(cells_.size()); }
     [[nodiscard]] std::int32_t find(Tet t) const { return index_.find(t.value); }
-    [[nodiscard]] Tet tet(std::int32_t i) const { return gone_[at(i)]; }
+    [[nodiscard]] Tet tet(std::int32_t i) const { return gone_[as_size(i)]; }
 
 private:
     std::span<const Tet> gone_;
@@ -164,7 +162,7 @@ Meeting meet(const Distances& d) {
     TetPart part = whole_tet();
     for (int most = 1; most <= 3; ++most)  // first the planes that leave little
         for (int i = 0; i < 4; ++i) {
-            if (left[at(i)] != most || !cut(part, d[at(i)])) continue;
+            if (left[as_size(i)] != most || !cut(part, d[as_size(i)])) continue;
             if (part.count == 0) return {};
             meeting.crossed |= 1u << i;
         }
@@ -176,7 +174,7 @@ Meeting meet(const Distances& d) {
 class Cover {
 public:
     Cover(const Mesh& before, const Mesh& after, const OldCells& old, const Watch* watch)
-        : before_(before), after_(after), old_(old), watch_(watch), seen_(at(old.size()), 0) {}
+        : before_(before), after_(after), old_(old), watch_(watch), seen_(as_size(old.size()), 0) {}
 
     void begin_chunk() { last_ = -1; }
 
@@ -190,7 +188,7 @@ public:
             heed(watch_);  // as that is work by the number of all old cells
             ++out.searched;
             for (std::int32_t i = 0; i < old_.size(); ++i)
-                if (old_[i].region == cell.region && seen_[at(i)] != stamp_) visit(i, cell);
+                if (old_[i].region == cell.region && seen_[as_size(i)] != stamp_) visit(i, cell);
         }
         out.worst_gap = std::max(out.worst_gap, std::abs(sum_ - 1));
         write(cell, out);
@@ -223,9 +221,9 @@ private:
         };
         for (Vertex v : after_.tets[slot]) add(v);
         for (int corner = 0; corner < 4; ++corner) {
-            const Tet n = after_.neighbour[slot][at(corner)];
+            const Tet n = after_.neighbour[slot][as_size(corner)];
             if (n.exists() && after_.region[n] == cell.region)
-                add(after_.tets[n][at(mirror_corner(after_, {slot, corner}))]);
+                add(after_.tets[n][as_size(mirror_corner(after_, {slot, corner}))]);
         }
         return near_;
     }
@@ -239,13 +237,13 @@ private:
             int across = -1;
             for (int k = 0; k < 4; ++k) {
                 const double coordinate =
-                    dot(old.inward[at(k)], cell.centre - old.on[at(k)]) * old.inverse_height[at(k)];
+                    dot(old.inward[as_size(k)], cell.centre - old.on[as_size(k)]) * old.inverse_height[as_size(k)];
                 if (coordinate >= least) continue;
                 least = coordinate;
                 across = k;
             }
             if (across < 0) return i;
-            i = old.across[at(across)];
+            i = old.across[as_size(across)];
         }
         return -1;
     }
@@ -281,9 +279,9 @@ private:
             if (corners[k] == v) continue;
             const auto& facet = tet_facets[k];  // v is one of its corners; the normal points out
             std::size_t a = 0;
-            while (corners[at(facet[a])] != v) ++a;
-            const Vec3 p = before_.position[corners[at(facet[(a + 1) % 3])]] - origin,
-                       q = before_.position[corners[at(facet[(a + 2) % 3])]] - origin;
+            while (corners[as_size(facet[a])] != v) ++a;
+            const Vec3 p = before_.position[corners[as_size(facet[(a + 1) % 3])]] - origin,
+                       q = before_.position[corners[as_size(facet[(a + 2) % 3])]] - origin;
             const Vec3 outward = cross(p, q);
             const double beyond = dot(outward, ray);
             if (beyond <= 0 || beyond * beyond <= least * squared_norm(outward)) continue;
@@ -295,14 +293,14 @@ private:
 
     void spread_from(std::int32_t start, const NewCell& cell) {
         queue_.assign(1, start);
-        seen_[at(start)] = stamp_;
+        seen_[as_size(start)] = stamp_;
         for (std::size_t i = 0; i < queue_.size(); ++i) {
             unsigned crossed = visit(queue_[i], cell);
             if (i == 0) crossed = 15;  // the centre may be in a facet
             for (int k = 0; k < 4; ++k) {
-                const std::int32_t n = old_[queue_[i]].across[at(k)];
-                if ((crossed >> k & 1u) == 0 || n < 0 || seen_[at(n)] == stamp_) continue;
-                seen_[at(n)] = stamp_;
+                const std::int32_t n = old_[queue_[i]].across[as_size(k)];
+                if ((crossed >> k & 1u) == 0 || n < 0 || seen_[as_size(n)] == stamp_) continue;
+                seen_[as_size(n)] = stamp_;
                 queue_.push_back(n);
             }
         }

@@ -24,8 +24,6 @@ constexpr int most_rings = 12;         // by which a cluster grows for the sake 
 constexpr double range_slack = 1e-13;  // [-] of the range of the values: beyond the bounds by rounding
 constexpr double value_slack = 1e-15;  // [-] of the values themselves
 
-constexpr std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 /// The old field; and the values that held vertices have on the new mesh.
 class OldField {
 public:
@@ -77,7 +75,7 @@ OldOverCell old_over_cell(const TransferPlan& plan, const MassCell& cell, const 
                           double origin) {
     OldOverCell over;
     if (cell.come >= 0) {
-        for (const NodalShare& share : plan.geometry->overlaps.nodal(at(cell.come))) {
+        for (const NodalShare& share : plan.geometry->overlaps.nodal(as_size(cell.come))) {
             const double value = old[share.from] - origin;
             over.see(value);
             for (std::size_t k = 0; k < 4; ++k) over.integral[k] += share.weight[k] * value;
@@ -119,7 +117,7 @@ BlockSystem block_system(const TransferPlan& plan, const MassBlock& block, const
         system.integral -= cell.volume / 4 * held;
         for (std::size_t k = 0; k < 4; ++k) {
             if (cell.unknown[k] < 0) continue;
-            const std::size_t i = at(cell.unknown[k]);
+            const std::size_t i = as_size(cell.unknown[k]);
             system.right[i] += over.integral[k] - cell.volume / 20 * held;
             system.bounds.least[i] = std::min(system.bounds.least[i], over.least);
             system.bounds.most[i] = std::max(system.bounds.most[i], over.most);
@@ -274,7 +272,7 @@ private:
         for (const MassCell& cell : of.cells) {
             double sum = 0;
             for (std::size_t k = 0; k < 4; ++k)
-                sum += cell.unknown[k] >= 0 && !s.value.empty() ? s.origin + s.value[at(cell.unknown[k])]
+                sum += cell.unknown[k] >= 0 && !s.value.empty() ? s.origin + s.value[as_size(cell.unknown[k])]
                                                                 : old_.held(plan_.after->tets[cell.tet][k]);
             sums.add_new(cell.tet, cell.volume / 4 * sum);
         }

@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/tetrahedron.h"
 #include "mesh/meshes.h"
+#include "mesh/proposals.h"
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
 
@@ -47,11 +48,7 @@ void expect_valid(const Mesh& mesh, const std::optional<Cavity>& cavity, int& ma
     if (!cavity) return;
     ++made;
     EXPECT_TRUE(std::isfinite(cavity->worst_after));
-    const auto place = [&](Vertex v) {
-        for (std::size_t k = 0; k < cavity->inserted.size(); ++k)
-            if (v == next_vertex(mesh, k)) return cavity->inserted[k];
-        return mesh.position[v];
-    };
+    const auto place = [&](Vertex v) { return place_in(mesh, *cavity, v); };
     for (const NewTet& t : cavity->added) {
         const auto& v = t.vertices;
         EXPECT_TRUE(std::isfinite(tet_aspect_ratio(place(v[0]), place(v[1]), place(v[2]), place(v[3]))));

@@ -1,5 +1,6 @@
 #include "adapt/zone.h"
 #include "adapt/cases.h"
+#include "adapt/way.h"
 #include "base/random.h"
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
@@ -24,7 +25,9 @@ double volume_on_the_way(Mesh mesh, const Array<Vertex, Vec3>& displacement, dou
 }
 
 double safe_fraction_of(const Mesh& mesh, const Array<Vertex, Vec3>& displacement, double least) {
-    return safe_fraction(mesh, all_tets(mesh), displacement, least);
+    Array<Vertex, Vec3> place = mesh.position;
+    for (Vertex v : place.indices()) place[v] += displacement[v];
+    return safe_fraction(mesh, all_tets(mesh), mesh.position, place, least);
 }
 
 TEST(SafeFraction, AgreesWithSamplingTheWay) {
@@ -82,7 +85,7 @@ TEST(SafeFraction, IsTheWholeWayWithoutMotionOrAllTogether) {
     EXPECT_EQ(safe_fraction_of(mesh, displacement, 0.05), 1);
     for (Vec3& d : displacement) d = {1, -2, 0.5};
     EXPECT_EQ(safe_fraction_of(mesh, displacement, 0.05), 1);
-    EXPECT_EQ(safe_fraction(mesh, {}, displacement), 1);
+    EXPECT_EQ(safe_fraction(mesh, {}, mesh.position, mesh.position, 0.05), 1);
 }
 
 TEST(SafeFraction, IsTheLeastOfAllCells) {
@@ -92,7 +95,9 @@ TEST(SafeFraction, IsTheLeastOfAllCells) {
     const double fraction = safe_fraction_of(mesh, displacement, 0);
     EXPECT_NEAR(fraction, 0.5, 1.7e-5);  // it is found to 2^-16
     double least = 1;
-    for (Tet t : all_tets(mesh)) least = std::min(least, safe_fraction(mesh, {&t, 1}, displacement, 0));
+    Array<Vertex, Vec3> place = mesh.position;
+    place[Vertex(0)] += displacement[Vertex(0)];
+    for (Tet t : all_tets(mesh)) least = std::min(least, safe_fraction(mesh, {&t, 1}, mesh.position, place, 0));
     EXPECT_EQ(fraction, least);
 }
 
@@ -122,7 +127,8 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
         const Mesh before = mesh;
         const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
         Zone zone;
-        const MoveReport report = move_boundary(mesh, domain, bodies, 0, 0.04, zone);
+        ZoneMotion motion;
+        const MoveReport report = move_boundary(mesh, domain, bodies, 0, 0.04, zone, motion);
         ASSERT_TRUE(report.arrived);
         EXPECT_EQ(report.fraction, 1);
         EXPECT_EQ(verify(mesh), "");
@@ -146,7 +152,7 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
             ++free_moved;
         }
         EXPECT_GE(free_moved, 190);
-        for (Tet t : zone.cells) EXPECT_EQ(mesh.region[t], surroundings);
+        for (Tet t : motion.cells) EXPECT_EQ(mesh.region[t], surroundings);
         const auto old_shape = properties(before), new_shape = properties(mesh);
         EXPECT_TRUE(same(new_shape, old_shape));  // all volumes to 1e-12 of the box's
         EXPECT_NEAR(new_shape.volume.at(Region(1)), old_shape.volume.at(Region(1)),
@@ -160,7 +166,8 @@ TEST(MoveBoundary, TellsHowFarItCouldGoAndLeavesTheMesh) {
     const Mesh before = mesh;
     const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
     Zone zone;
-    const MoveReport report = move_boundary(mesh, domain, bodies, 0, 1.5, zone);
+    ZoneMotion motion;
+    const MoveReport report = move_boundary(mesh, domain, bodies, 0, 1.5, zone, motion);
     EXPECT_FALSE(report.arrived);
     EXPECT_EQ(mesh, before);
     EXPECT_GT(report.fraction, 0);
@@ -169,7 +176,7 @@ TEST(MoveBoundary, TellsHowFarItCouldGoAndLeavesTheMesh) {
     EXPECT_EQ(mesh.region[report.limiting], surroundings);
 
     // As far as it said it does go.
-    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 0.99 * report.fraction * 1.5, zone).arrived);
+    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 0.99 * report.fraction * 1.5, zone, motion).arrived);
     EXPECT_EQ(verify(mesh), "");
 }
 
@@ -179,7 +186,8 @@ TEST(MoveBoundary, AtRestNothingMoves) {
     const Mesh before = mesh;
     const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
     Zone zone;
-    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 1, zone).arrived);
+    ZoneMotion motion;
+    EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 1, zone, motion).arrived);
     for (Vertex v : all_vertices(mesh)) EXPECT_EQ(mesh.position[v], before.position[v]);
 }
 
@@ -201,9 +209,10 @@ TEST(MoveBoundary, ABodyThatComesBackIsTheSameBitForBit) {
         EXPECT_NEAR(start, 1, 1e-12);
         const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
         Zone zone;
+        ZoneMotion motion;
         std::vector<Vec3> seen;
         for (int i = 0; i < 40 * lap; ++i) {
-            ASSERT_TRUE(move_boundary(mesh, domain, bodies, i, i + 1, zone).arrived) << "step " << i;
+            ASSERT_TRUE(move_boundary(mesh, domain, bodies, i, i + 1, zone, motion).arrived) << "step " << i;
             ASSERT_NEAR(region_volume(mesh, Region(1)) / volume(domain.bodies[0].shape), 1, 1e-12) << i;
             if (i % lap != 0) continue;
             std::vector<Vec3> here;

@@ -33,25 +33,23 @@ Mesh spoilt_mesh(std::uint64_t seed) {
     return mesh;
 }
 
-Zone zone_of(const Mesh& mesh) {
-    Zone zone;
-    gather(zone, mesh, all_tets(mesh, surroundings));
-    find_sizes(zone, snapshot(sphere_in_box(), 0));
-    return zone;
+MovableCells zone_of(const Mesh& mesh) {
+    const Snapshot at_time = snapshot(sphere_in_box(), 0);
+    return movable(mesh, all_tets(mesh, surroundings), &at_time);
 }
 
 TEST(OptimisePlacesOfAZone, HeldVerticesStayAndOthersSlide) {
     const Mesh mesh = spoilt_mesh(1);
-    Zone zone = zone_of(mesh);
-    EXPECT_GT(optimise_places(zone, mesh, AdaptOptions{.floor = 5}).value().moved, 0);
+    auto [zone, motion] = zone_of(mesh);
+    EXPECT_GT(optimise_places(zone, motion, mesh, AdaptOptions{.floor = 5}).value().moved, 0);
     int moved = 0, on_walls = 0;
-    for (Vertex v : zone.vertices) {
-        const Freedom free = freedom(zone, v);
+    for (Vertex v : motion.vertices) {
+        const Freedom free = freedom(zone, motion, v);
         for (int axis = 0; axis < 3; ++axis)
             if (!free.along[static_cast<std::size_t>(axis)]) {
-                EXPECT_EQ(zone.place[v][axis], mesh.position[v][axis]) << "vertex " << v.value;
+                EXPECT_EQ(motion.place[v][axis], mesh.position[v][axis]) << "vertex " << v.value;
             }
-        if (zone.place[v] == mesh.position[v]) continue;
+        if (motion.place[v] == mesh.position[v]) continue;
         ++moved;
         on_walls += std::ranges::count(free.along, true) < 3;
     }
@@ -63,11 +61,11 @@ TEST(OptimisePlacesOfAZone, TakesNoCellNearTheFloorIfNoneIs) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Mesh mesh = shaken_mesh(seed, 5);
-        Zone zone = zone_of(mesh);
-        const double worst = worst_aspect_ratio(mesh, zone.cells);
-        EXPECT_TRUE(optimise_places(zone, mesh, AdaptOptions{.good_enough = worst, .floor = worst}));
-        EXPECT_NE(zone.place, mesh.position);
-        for (Tet t : zone.cells) EXPECT_LE(zone.ratio[t], worst);
+        auto [zone, motion] = zone_of(mesh);
+        const double worst = worst_aspect_ratio(mesh, motion.cells);
+        EXPECT_TRUE(optimise_places(zone, motion, mesh, AdaptOptions{.good_enough = worst, .floor = worst}));
+        EXPECT_NE(motion.place, mesh.position);
+        for (Tet t : motion.cells) EXPECT_LE(motion.ratio[t], worst);
     }
 }
 
@@ -76,42 +74,44 @@ TEST(OptimisePlacesOfAZone, LeavesFewBadCellsAndKnowsTheirRatios) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Mesh mesh = spoilt_mesh(seed);
-        Zone zone = zone_of(mesh);
-        measure(zone, mesh);
-        const auto ratio = [&](Tet t) { return zone.ratio[t]; };
-        const auto is_bad = [&](Tet t) { return zone.ratio[t] > options.good_enough; };
-        const auto bad_before = std::ranges::count_if(zone.cells, is_bad);
-        const double worst_before = zone.ratio[std::ranges::max(zone.cells, {}, ratio)];
-        EXPECT_TRUE(optimise_places(zone, mesh, options));
-        EXPECT_LT(11 * std::ranges::count_if(zone.cells, is_bad), bad_before);
-        EXPECT_LT(zone.ratio[std::ranges::max(zone.cells, {}, ratio)], worst_before);
-        write_places(zone, mesh);
+        auto [zone, motion] = zone_of(mesh);
+        measure(motion, mesh);
+        const auto ratio = [&motion = motion](Tet t) { return motion.ratio[t]; };
+        const auto is_bad = [&motion = motion, &options](Tet t) { return motion.ratio[t] > options.good_enough; };
+        const auto bad_before = std::ranges::count_if(motion.cells, is_bad);
+        const double worst_before = motion.ratio[std::ranges::max(motion.cells, {}, ratio)];
+        EXPECT_TRUE(optimise_places(zone, motion, mesh, options));
+        EXPECT_LT(11 * std::ranges::count_if(motion.cells, is_bad), bad_before);
+        EXPECT_LT(motion.ratio[std::ranges::max(motion.cells, {}, ratio)], worst_before);
+        write_places(motion, mesh);
         EXPECT_EQ(verify(mesh), "");
-        for (Tet t : zone.cells) EXPECT_EQ(zone.ratio[t], aspect_ratio(mesh, t));
+        for (Tet t : motion.cells) EXPECT_EQ(motion.ratio[t], aspect_ratio(mesh, t));
     }
 }
 
 TEST(OptimisePlacesOfAZone, MovesNothingIfACellIsTurnedOver) {
     const Mesh mesh = shaken_mesh(1, 5);
-    Zone zone = zone_of(mesh);
-    const auto is_free = [&](Vertex v) { return freedom(zone, v).along == std::array{true, true, true}; };
-    const Vertex v = *std::ranges::find_if(zone.vertices, is_free);
-    zone.place[v] += Vec3{2, 0, 0};  // through its link
-    const auto places = zone.place;
-    EXPECT_FALSE(optimise_places(zone, mesh, AdaptOptions{}));
-    EXPECT_EQ(zone.place, places);
+    auto [zone, motion] = zone_of(mesh);
+    const auto is_free = [&zone = zone, &motion = motion](Vertex v) {
+        return freedom(zone, motion, v).along == std::array{true, true, true};
+    };
+    const Vertex v = *std::ranges::find_if(motion.vertices, is_free);
+    motion.place[v] += Vec3{2, 0, 0};  // through its link
+    const auto places = motion.place;
+    EXPECT_FALSE(optimise_places(zone, motion, mesh, AdaptOptions{}));
+    EXPECT_EQ(motion.place, places);
 }
 
 TEST(OptimisePlacesOfAZone, EqualisesVolumes) {
     const Mesh mesh = spoilt_mesh(2);
-    Zone zone = zone_of(mesh);
-    const auto mean_ratio = [&] {
+    auto [zone, motion] = zone_of(mesh);
+    const auto mean_ratio = [&mesh, &motion = motion] {
         double sum = 0;
-        for (Tet t : zone.cells) sum += aspect_ratio(zone, mesh, t);
-        return sum / static_cast<double>(zone.cells.size());
+        for (Tet t : motion.cells) sum += aspect_ratio(motion, mesh, t);
+        return sum / static_cast<double>(motion.cells.size());
     };
     const double before = mean_ratio();
-    EXPECT_TRUE(optimise_places(zone, mesh, AdaptOptions{}));
+    EXPECT_TRUE(optimise_places(zone, motion, mesh, AdaptOptions{}));
     EXPECT_LT(mean_ratio(), 0.33 * before);
 }
 
@@ -120,11 +120,11 @@ TEST(OptimisePlacesOfAZone, SameBitsForAnyNumberOfThreads) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Mesh mesh = spoilt_mesh(seed);
         const auto optimised = [&] {
-            Zone zone = zone_of(mesh);
-            EXPECT_TRUE(optimise_places(zone, mesh, AdaptOptions{}));
-            return zone;
+            auto [zone, motion] = zone_of(mesh);
+            EXPECT_TRUE(optimise_places(zone, motion, mesh, AdaptOptions{}));
+            return motion;
         };
-        const Zone by_one = with_threads(1, optimised), by_two = with_threads(2, optimised);
+        const ZoneMotion by_one = with_threads(1, optimised), by_two = with_threads(2, optimised);
         EXPECT_NE(by_one.place, mesh.position);
         EXPECT_EQ(by_one.place, by_two.place);
         EXPECT_EQ(by_one.ratio, by_two.ratio);

@@ -81,46 +81,42 @@ TEST(PaperSmoothing, PutsAVertexWhereItsWeightsSay) {
         Mesh mesh = spoilt_ball();
         mesh.position[Vertex(1)] = {1.6, 0, 0};  // a sparse side
         const Vec3 expected = laplacian_place(mesh, Vertex(0), weights);
-        Zone zone;
-        gather(zone, mesh, all_tets(mesh));
+        auto [zone, motion] = movable(mesh, all_tets(mesh));
         // Far below the limit: a sweep of the Laplacian and no more.
-        const auto changes = smooth_places(zone, mesh, {.floor = 1000, .paper = PaperMethod{weights, 1e-9, 0.9, 0.9, 1}});
+        const auto changes = smooth_places(zone, motion, mesh, {.floor = 1000, .paper = PaperMethod{weights, 1e-9, 0.9, 0.9, 1}});
         ASSERT_TRUE(changes);
         EXPECT_EQ(changes->moved, 1);
         EXPECT_EQ(changes->smoothing_sweeps, 1);
-        EXPECT_NEAR(distance(zone.place[Vertex(0)], expected), 0, 1e-15);
+        EXPECT_NEAR(distance(motion.place[Vertex(0)], expected), 0, 1e-15);
     }
 }
 
 TEST(PaperSmoothing, EqualisesVolumesFirstAboutTheLimit) {
     Mesh mesh = spoilt_ball();
-    Zone zone;
-    gather(zone, mesh, all_tets(mesh));
+    auto [zone, motion] = movable(mesh, all_tets(mesh));
     ASSERT_GT(worst_of(mesh), by_paper.floor);
-    const auto changes = smooth_places(zone, mesh, by_paper);
+    const auto changes = smooth_places(zone, motion, mesh, by_paper);
     ASSERT_TRUE(changes);
     EXPECT_GE(changes->smoothing_sweeps, 2);
-    write_places(zone, mesh);
+    write_places(motion, mesh);
     EXPECT_LT(worst_of(mesh), 5);
 }
 
 TEST(PaperSmoothing, LeavesGoodCellsAlone) {
     Mesh mesh = improved_mesh(sphere_in_box(), 1);
-    Zone zone;
-    gather(zone, mesh, all_tets(mesh));
-    const auto changes = smooth_places(zone, mesh, {.floor = 20, .paper = PaperMethod{}});
+    auto [zone, motion] = movable(mesh, all_tets(mesh));
+    const auto changes = smooth_places(zone, motion, mesh, {.floor = 20, .paper = PaperMethod{}});
     ASSERT_TRUE(changes);
     EXPECT_EQ(changes->smoothing_sweeps, 0);
-    for (Vertex v : zone.vertices) EXPECT_EQ(zone.place[v], mesh.position[v]);
+    for (Vertex v : motion.vertices) EXPECT_EQ(motion.place[v], mesh.position[v]);
 }
 
 TEST(PaperSmoothing, TellsThatACellStaysTurnedOver) {
     Mesh mesh = ball_of_vertex();
-    Zone zone;
-    gather(zone, mesh, all_tets(mesh));
+    auto [zone, motion] = movable(mesh, all_tets(mesh));
     zone.axes[Vertex(0)] = 0;  // held
-    zone.place[Vertex(0)] = {2, 0, 0};
-    EXPECT_FALSE(smooth_places(zone, mesh, by_paper));
+    motion.place[Vertex(0)] = {2, 0, 0};
+    EXPECT_FALSE(smooth_places(zone, motion, mesh, by_paper));
 }
 
 TEST(PaperRemeshing, CutsOutWhatIsBad) {

@@ -24,7 +24,7 @@ void expect_collapse(Mesh mesh, Vertex from, Vertex to) {
     const Properties before = properties(mesh);
     const auto cavity = edge_collapse(mesh, from, to, 100);
     ASSERT_TRUE(cavity);
-    const auto added = replace_cells(mesh, *cavity);
+    const auto added = replace_cells(mesh, *cavity).cells;
     EXPECT_EQ(verify(mesh), "");
     EXPECT_TRUE(same_shape(properties(mesh), before));
     EXPECT_FALSE(alive(mesh, from));
@@ -97,15 +97,15 @@ Vertex expect_split(Mesh& mesh, Edge e, bool boundary_stays) {
     EXPECT_TRUE(cavity);
     if (!cavity) return {};
     const int tets = count_tets(mesh) + static_cast<int>(around->tets.size());
-    const Vertex inserted = next_vertex(mesh);
-    const auto added = replace_cells(mesh, *cavity);
+    const auto [added, inserted] = replace_cells(mesh, *cavity);
     EXPECT_EQ(verify(mesh), "");
     EXPECT_EQ(count_tets(mesh), tets);
     EXPECT_TRUE(same_shape(properties(mesh), before));
     EXPECT_EQ(same(properties(mesh), before), boundary_stays);
     EXPECT_NEAR(cavity->worst_after, worst_aspect_ratio(mesh, added), 1e-9);
     EXPECT_FALSE(shell(mesh, e));
-    return inserted;
+    EXPECT_EQ(inserted.size(), 1u);
+    return inserted.front();
 }
 
 Constraint held(const Mesh& mesh, Vertex v) { return constraint(mesh, v, ball(mesh, v)); }

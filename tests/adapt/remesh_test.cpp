@@ -96,7 +96,7 @@ TEST(ClusterRemesh, KeepsAllButTheInsideOfTheCluster) {
             for (const NewTet& t : cavity->added) EXPECT_EQ(t.region, region);
             EXPECT_EQ(outer_facets_removed(mesh, *cavity), outer_facets_added(*cavity));
             EXPECT_LT(cavity->worst_after, cavity->worst_before);
-            const auto added = replace_cells(mesh, *cavity);
+            const auto added = replace_cells(mesh, *cavity).cells;
             EXPECT_EQ(verify(mesh), "");
             EXPECT_TRUE(same_shape(properties(mesh), properties(before)));
             if (touches_the_box(before, *cavity)) ++at_box;

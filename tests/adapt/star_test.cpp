@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<StarFacet> star_of(const Mesh& mesh, Vertex v) {
     std::vector<StarFacet> star;
-    star_of_ball(mesh, v, ball(mesh, v), star);
+    star_of_ball(mesh, mesh.position, v, ball(mesh, v), star);
     return star;
 }
 

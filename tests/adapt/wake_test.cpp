@@ -87,7 +87,7 @@ TEST(Wake, OneThatBeginsHereGoesOnLikeOneThatCame) {
         for (Tet t : cost.changes.cells)
             far_away += alive(came.reference(), t) && distance(centroid(came.reference(), t), centre) > 1;
     }
-    EXPECT_GE(far_away, 2700);  // the motion is felt 0.8 away at most
+    EXPECT_GE(far_away, 2700);  // the motion reaches 0.8 away at most
 }
 
 TEST(Wake, ToAndFro) {

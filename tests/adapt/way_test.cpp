@@ -1,6 +1,7 @@
 #include "adapt/way.h"
 
 #include "adapt/cases.h"
+#include "adapt/constants.h"
 #include <kropla/adapt/attempt.h>
 #include "base/random.h"
 #include "base/tetrahedron.h"

@@ -1,6 +1,7 @@
 #include "adapt/zone.h"
 
 #include "adapt/cases.h"
+#include "adapt/way.h"
 #include "base/random.h"
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
@@ -24,21 +25,19 @@ std::vector<Tet> random_part(const Mesh& mesh, double share, Random& random) {
 
 TEST(Zone, HasTheCellsTheirVerticesAndPlaces) {
     const Mesh mesh = sphere_mesh();
-    Zone zone;
     const auto cells = all_tets(mesh, surroundings);
-    gather(zone, mesh, cells);
-    ASSERT_EQ(zone.cells, cells);
+    const auto [zone, motion] = movable(mesh, cells);
+    ASSERT_EQ(motion.cells, cells);
     std::vector<Vertex> expected;
     for (Tet t : cells) {
         EXPECT_TRUE(zone.holds.contains(t));
-        EXPECT_EQ(aspect_ratio(zone, mesh, t), aspect_ratio(mesh, t));
+        EXPECT_EQ(aspect_ratio(motion, mesh, t), aspect_ratio(mesh, t));
         expected.insert(expected.end(), mesh.tets[t].begin(), mesh.tets[t].end());
     }
     std::ranges::sort(expected);
-    const auto repeated = std::ranges::unique(expected);
-    expected.erase(repeated.begin(), repeated.end());
-    EXPECT_EQ(zone.vertices, expected);
-    for (Vertex v : zone.vertices) EXPECT_EQ(zone.place[v], mesh.position[v]);
+    expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+    EXPECT_EQ(motion.vertices, expected);
+    for (Vertex v : motion.vertices) EXPECT_EQ(motion.place[v], mesh.position[v]);
 }
 
 std::vector<Tet> ball_within(const Mesh& mesh, const Zone& zone, Vertex v) {
@@ -53,20 +52,18 @@ TEST(Zone, BallsAreThoseOfTheMeshWithinTheZone) {
     Random random{1};
     for (double share : {0.1, 0.5, 1.0}) {
         SCOPED_TRACE("seed 1, share " + std::to_string(share));
-        Zone zone;
-        gather(zone, mesh, random_part(mesh, share, random));
-        for (Vertex v : zone.vertices) ASSERT_EQ(zone.ball[v], ball_within(mesh, zone, v));
+        auto [zone, motion] = movable(mesh, random_part(mesh, share, random));
+        for (Vertex v : motion.vertices) ASSERT_EQ(zone.ball[v], ball_within(mesh, zone, v));
     }
 }
 
 TEST(Zone, VerticesOnTheBoxSlideOnItAndThoseOfInterfacesAreHeld) {
     const Mesh mesh = sphere_mesh();
-    Zone zone;
-    gather(zone, mesh, all_tets(mesh, surroundings));
+    auto [zone, motion] = movable(mesh, all_tets(mesh, surroundings));
     std::array<int, 4> count{};  // of vertices that slide along so many axes
-    for (Vertex v : zone.vertices) {
+    for (Vertex v : motion.vertices) {
         const Constraint held = constraint(mesh, v, ball(mesh, v));
-        const Freedom free = freedom(zone, v);
+        const Freedom free = freedom(zone, motion, v);
         for (unsigned axis = 0; axis < 3; ++axis) {
             const bool on_wall = (held.patches >> (2 * axis) & 3) != 0;
             EXPECT_EQ(free.along[axis], !on_wall && !held.on_interface) << "vertex " << v.value;
@@ -80,12 +77,11 @@ TEST(Zone, VerticesOnTheBoxSlideOnItAndThoseOfInterfacesAreHeld) {
 TEST(Zone, FacetsOfOtherPatchesHoldTheirVertices) {
     Mesh mesh = sphere_mesh();
     rename_patch(mesh, Patch(0), rigid_patch);
-    Zone zone;
-    gather(zone, mesh, all_tets(mesh, surroundings));
+    auto [zone, motion] = movable(mesh, all_tets(mesh, surroundings));
     int held = 0;
-    for (Vertex v : zone.vertices) {
+    for (Vertex v : motion.vertices) {
         if (mesh.position[v].x != sphere_in_box().box.min.x) continue;
-        EXPECT_TRUE(freedom(zone, v).none());
+        EXPECT_TRUE(freedom(zone, motion, v).none());
         ++held;
     }
     EXPECT_GE(held, 28);
@@ -97,13 +93,12 @@ TEST(Zone, OnlyVerticesWithAllTheirCellsInTheZoneAreFree) {
     int free = 0, rim = 0;
     for (int round = 0; round < 20; ++round) {
         SCOPED_TRACE("seed 2, round " + std::to_string(round));
-        Zone zone;
-        gather(zone, mesh, random_part(mesh, random.uniform(0.6, 1), random));
-        for (Vertex v : zone.vertices) {
+        auto [zone, motion] = movable(mesh, random_part(mesh, random.uniform(0.6, 1), random));
+        for (Vertex v : motion.vertices) {
             const auto whole = ball(mesh, v);
             const bool complete = zone.ball[v].size() == whole.size();
             const bool may_move = !freedom(constraint(mesh, v, whole)).none();
-            EXPECT_EQ(!freedom(zone, v).none(), complete && may_move) << "vertex " << v.value;
+            EXPECT_EQ(!freedom(zone, motion, v).none(), complete && may_move) << "vertex " << v.value;
             if (!constraint(mesh, v, whole).on_interface) {
                 EXPECT_EQ((zone.axes[v] & Zone::rim) != 0, !complete) << "vertex " << v.value;
             }
@@ -119,33 +114,14 @@ TEST(Zone, WhatMovesWithABodyOrNotAtAllIsNotFree) {
     const auto vertices = all_vertices(mesh);
     const auto is_free = [&](Vertex v) { return constraint(mesh, v, ball(mesh, v)).free(); };
     const Vertex v = *std::ranges::find_if(vertices, is_free);
-    Zone zone;
-    gather(zone, mesh, ball(mesh, v));
-    EXPECT_FALSE(freedom(zone, v).none());
-    zone.moves[v] = Zone::with_body;
-    EXPECT_TRUE(freedom(zone, v).none());
-    begin_motion(zone);
-    EXPECT_TRUE(freedom(zone, v).none());
-    EXPECT_TRUE(zone.cells.empty());
+    auto [zone, motion] = movable(mesh, ball(mesh, v));
+    EXPECT_FALSE(freedom(zone, motion, v).none());
+    motion.moves[v] = ZoneMotion::with_body;
+    EXPECT_TRUE(freedom(zone, motion, v).none());
+    begin_motion(motion);
+    EXPECT_TRUE(freedom(zone, motion, v).none());
+    EXPECT_TRUE(motion.cells.empty());
     EXPECT_EQ(zone.holds.size(), ball(mesh, v).size());
-}
-
-TEST(Zone, ListsTheCellsWithAVertexThatMoves) {
-    const Mesh mesh = sphere_mesh();
-    Zone zone;
-    gather(zone, mesh, all_tets(mesh, surroundings));
-    const Vertex v = zone.vertices[zone.vertices.size() / 2];
-    begin_motion(zone);
-    zone.moves[v] = Zone::by_itself;
-    list_cells(zone, mesh);
-    EXPECT_EQ(zone.cells, ball_within(mesh, zone, v));
-    shrink(zone, mesh);
-    EXPECT_EQ(zone.holds.size(), zone.cells.size());
-    zone.vertices = zone.has.list();
-    Zone fresh;
-    gather(fresh, mesh, zone.cells);
-    EXPECT_EQ(zone.vertices, fresh.vertices);
-    for (Vertex w : fresh.vertices) EXPECT_EQ(zone.ball[w], fresh.ball[w]);
 }
 
 /// Does the zone say what one would that was gathered from its cells?
@@ -153,15 +129,29 @@ void expect_as_fresh(const Zone& zone, const Mesh& mesh) {
     std::vector<Tet> cells;
     zone.holds.for_each([&](Tet t) { cells.push_back(t); });
     EXPECT_EQ(zone.holds.size(), cells.size());
-    Zone fresh;
-    gather(fresh, mesh, cells);
+    const auto [fresh, motion] = movable(mesh, cells);
     std::vector<Vertex> vertices;
     zone.has.for_each([&](Vertex v) { vertices.push_back(v); });
-    ASSERT_EQ(vertices, fresh.vertices);
+    ASSERT_EQ(vertices, motion.vertices);
     for (Vertex v : vertices) {
         ASSERT_EQ(zone.ball[v], fresh.ball[v]) << "vertex " << v.value;
         ASSERT_EQ(zone.axes[v], fresh.axes[v]) << "vertex " << v.value;
     }
+}
+
+TEST(Zone, ListsTheCellsWithAVertexThatMoves) {
+    const Mesh mesh = sphere_mesh();
+    auto [zone, motion] = movable(mesh, all_tets(mesh, surroundings));
+    const Vertex v = motion.vertices[motion.vertices.size() / 2];
+    begin_motion(motion);
+    motion.moves[v] = ZoneMotion::by_itself;
+    list_cells(zone, motion, mesh);
+    EXPECT_EQ(motion.cells, ball_within(mesh, zone, v));
+    IndexSet<Tet> stay;
+    for (Tet t : motion.cells) stay.insert(t);
+    shrink(zone, mesh, stay);
+    EXPECT_EQ(zone.holds.list(), motion.cells);
+    expect_as_fresh(zone, mesh);
 }
 
 TEST(Zone, FollowsAMeshThatIsTakenBack) {
@@ -221,11 +211,10 @@ TEST(Zone, FollowsAMeshWhoseCellsAreReplaced) {
 TEST(Zone, WritePlacesMovesItsVerticesOnly) {
     Mesh mesh = sphere_mesh();
     const Mesh before = mesh;
-    Zone zone;
-    gather(zone, mesh, std::array{Tet(0), Tet(1)});
-    for (Vertex v : zone.vertices) zone.place[v] += Vec3{0.01, 0.02, 0.03};
+    auto [zone, motion] = movable(mesh, std::array{Tet(0), Tet(1)});
+    for (Vertex v : motion.vertices) motion.place[v] += Vec3{0.01, 0.02, 0.03};
     EXPECT_EQ(mesh, before) << "nothing before write_places";
-    write_places(zone, mesh);
+    write_places(motion, mesh);
     for (Vertex v : mesh.position.indices()) {
         const Vec3 way = zone.has.contains(v) ? Vec3{0.01, 0.02, 0.03} : Vec3{};
         EXPECT_EQ(mesh.position[v], before.position[v] + way);
@@ -234,28 +223,10 @@ TEST(Zone, WritePlacesMovesItsVerticesOnly) {
     EXPECT_EQ(mesh, before);
 }
 
-TEST(Zone, OneThatWasUsedIsAsGoodAsNew) {
-    const Mesh mesh = sphere_mesh();
-    Random random{3};
-    Zone used;
-    for (int round = 0; round < 5; ++round) {
-        const auto part = random_part(mesh, random.uniform(0.1, 1), random);
-        Zone fresh;
-        gather(fresh, mesh, part);
-        gather(used, mesh, part);
-        EXPECT_EQ(used.cells, fresh.cells);
-        EXPECT_EQ(used.vertices, fresh.vertices);
-        EXPECT_EQ(used.moves, fresh.moves);
-        expect_as_fresh(used, mesh);
-        for (Vertex v : fresh.vertices) EXPECT_EQ(used.place[v], fresh.place[v]);
-    }
-}
-
 TEST(Zone, HoldsEachCellOnceInAscendingOrder) {
     const Mesh mesh = sphere_mesh();
-    Zone zone;
-    gather(zone, mesh, std::array{Tet(7), Tet(2), Tet(7), Tet(90), Tet(2)});
-    EXPECT_EQ(zone.cells, (std::vector{Tet(2), Tet(7), Tet(90)}));
+    auto [zone, motion] = movable(mesh, std::array{Tet(7), Tet(2), Tet(7), Tet(90), Tet(2)});
+    EXPECT_EQ(motion.cells, (std::vector{Tet(2), Tet(7), Tet(90)}));
 }
 
 TEST(Zone, ItsWayIsAsSafeAsThatOfTheLeastSafeCell) {
@@ -264,17 +235,16 @@ TEST(Zone, ItsWayIsAsSafeAsThatOfTheLeastSafeCell) {
     Random random{4};
     int arrived = 0, stopped = 0;
     for (double reach : {0.01, 0.05, 0.1, 0.3}) {
-        Zone zone;
-        gather(zone, mesh, all_tets(mesh, surroundings));
-        Array<Vertex, Vec3> displacement(mesh.position.size());
+        auto [zone, motion] = movable(mesh, all_tets(mesh, surroundings));
         const auto up_to = [&] { return random.uniform(-reach, reach); };
-        for (Vertex v : zone.vertices) zone.place[v] += displacement[v] = {up_to(), up_to(), up_to()};
-        const MoveReport report = check_way(zone, mesh, mesh.position, 0.05);
-        EXPECT_NEAR(report.fraction, safe_fraction(mesh, zone.cells, displacement, 0.05), 1e-12);
+        for (Vertex v : motion.vertices) motion.place[v] += Vec3{up_to(), up_to(), up_to()};
+        const MoveReport report = check_way(motion, mesh, mesh.position, 0.05);
+        EXPECT_NEAR(report.fraction, safe_fraction(mesh, motion.cells, mesh.position, motion.place, 0.05), 1e-12);
         EXPECT_EQ(report.arrived, report.fraction == 1);
         (report.arrived ? arrived : stopped)++;
         if (!report.arrived) {
-            EXPECT_NEAR(report.fraction, safe_fraction(mesh, {&report.limiting, 1}, displacement, 0.05), 1e-12);
+            EXPECT_NEAR(report.fraction, safe_fraction(mesh, {&report.limiting, 1}, mesh.position, motion.place, 0.05),
+                        1e-12);
         }
     }
     EXPECT_GE(arrived, 2);

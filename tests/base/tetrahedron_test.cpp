@@ -51,26 +51,28 @@ TEST(TetShape, FourAtOnceHaveTheBitsOfEach) {
     Random random{seed};
     for (int round = 0; round < 2000; ++round) {
         std::array<Corners, 4> each;
-        FourTets four;
         FourPlaces places;
         for (std::size_t i = 0; i < 4; ++i) {
             Corners& t = each[i] = random_tet(random);
             if (random.below(8) == 0) std::swap(t[0], t[1]);
             if (random.below(8) == 0) t[3] = t[0] + random.uniform() * (t[1] - t[0]) + random.uniform() * (t[2] - t[0]);
-            set(four.a, i, t[0]);
-            set(four.b, i, t[1]);
-            set(four.c, i, t[2]);
-            set(four.d, i, t[3]);
             places[i] = {&t[0], &t[1], &t[2], &t[3]};
         }
-        Four ratios, by_place, again, energies;
-        tet_aspect_ratios(four, ratios);
-        tet_aspect_ratios(places, by_place);
-        tet_aspect_ratios(places, again, energies);
+        std::vector<StarFacet> star;
+        for (const Corners& t : each) star.push_back({t[1], t[2], t[3]});
+        star.resize(round % 2 == 0 ? 3 : 4);
+        auto facets = by_fours(star);
+        const Vec3 x = each[0][0];
+        find_ratios(facets.front(), x);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto& [a, b, c] = star[std::min(i, star.size() - 1)];
+            ASSERT_EQ(facets.front().ratios[i], tet_aspect_ratio(x, a, b, c)) << "round " << round;
+        }
+        const FourNumbers by_place = tet_aspect_ratios(places);
+        const auto [again, energies] = tet_energies(places);
         for (std::size_t i = 0; i < 4; ++i) {
             const auto& [a, b, c, d] = each[i];
             const double ratio = aspect_ratio(each[i]);
-            ASSERT_EQ(ratios[i], ratio) << "round " << round;
             ASSERT_EQ(by_place[i], ratio) << "round " << round;
             ASSERT_EQ(again[i], ratio) << "round " << round;
             if (std::isfinite(ratio)) {

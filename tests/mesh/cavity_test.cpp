@@ -59,8 +59,9 @@ TEST(ReplaceCells, ThreeBecomeTwo) {
 TEST(ReplaceCells, InsertsAVertex) {
     Mesh mesh = one_tet();
     const Properties before = properties(mesh);
-    const Vertex named = next_vertex(mesh);
-    const auto added = replace_cells(mesh, insertion(mesh, Tet(0), {0.25, 0.25, 0.25}));
+    const auto [added, inserted] = replace_cells(mesh, insertion(mesh, Tet(0), {0.25, 0.25, 0.25}));
+    ASSERT_EQ(inserted.size(), 1u);
+    const Vertex named = inserted.front();
     EXPECT_EQ(verify(mesh), "");
     EXPECT_TRUE(same(properties(mesh), before));
     EXPECT_EQ(count_tets(mesh), 4);
@@ -100,8 +101,7 @@ TEST(ReplaceCells, SplitsEdgesInsideAndOnTheBoundary) {
     for (int n = 3; n <= 6; ++n) {
         for (Mesh mesh : {shell_of_edge(n), open_shell_of_edge(n)}) {
             const Properties before = properties(mesh);
-            const Vertex middle = next_vertex(mesh);
-            replace_cells(mesh, edge_split(mesh, axis));
+            const Vertex middle = replace_cells(mesh, edge_split(mesh, axis)).vertices.front();
             EXPECT_EQ(verify(mesh), "");
             EXPECT_TRUE(same_shape(properties(mesh), before));
             EXPECT_EQ(count_tets(mesh), 2 * n);
@@ -119,8 +119,7 @@ TEST(ReplaceCells, KeepsTheRegionsOfASplitInterface) {
     Mesh mesh = cube_in_cube(3);
     const Properties before = properties(mesh);
     const Edge on_body{Vertex(21), Vertex(22)};
-    const Vertex middle = next_vertex(mesh);
-    replace_cells(mesh, edge_split(mesh, on_body));
+    const Vertex middle = replace_cells(mesh, edge_split(mesh, on_body)).vertices.front();
     EXPECT_EQ(verify(mesh), "");
     EXPECT_TRUE(same(properties(mesh), before));
     EXPECT_TRUE(constraint(mesh, middle, ball(mesh, middle)).on_interface);
@@ -130,13 +129,12 @@ TEST(ReplaceCells, TakesFreeSlotsFirst) {
     Mesh mesh = ball_of_vertex();
     replace_cells(mesh, edge_collapse(mesh, {Vertex(0), Vertex(1)}));
     const std::size_t slots = mesh.tets.size();
-    EXPECT_EQ(next_vertex(mesh, 0), Vertex(0));
-    EXPECT_EQ(next_vertex(mesh, 1), Vertex(7));
     Tet first;
     for (Tet t : mesh.tets.indices())
         if (alive(mesh, t)) first = t;
-    const auto added = replace_cells(mesh, insertion(mesh, first, centroid(mesh, first)));
+    const auto [added, inserted] = replace_cells(mesh, insertion(mesh, first, centroid(mesh, first)));
     EXPECT_EQ(verify(mesh), "");
+    EXPECT_EQ(inserted, std::vector{Vertex(0)});
     EXPECT_EQ(mesh.tets.size(), slots);
     EXPECT_EQ(added.front(), first);
     EXPECT_EQ(mesh.free_tets.size(), 1u);
@@ -152,25 +150,36 @@ TEST(ReplaceCells, NamesSeveralNewVertices) {
         if (alive(mesh, u)) t = u;
     const Vec3 first = centroid(mesh, t), second = (first + mesh.position[mesh.tets[t][0]]) / 2;
     Cavity both = insertion(mesh, t, first);
-    const Vertex p = next_vertex(mesh, 0), q = next_vertex(mesh, 1);
     // all but the first have corner 0 of t, and `second` in the middle of their edge from there to p
     both.inserted.push_back(second);
     std::vector<NewTet> halves = {both.added[0]};  // the one without corner 0
     for (std::size_t i = 1; i < 4; ++i)
         for (std::size_t end : {std::size_t{0}, i}) {
             halves.push_back(both.added[i]);
-            halves.back().vertices[end] = q;
+            halves.back().vertices[end] = inserted_vertex(1);
         }
     both.added = halves;
     ASSERT_TRUE(all_positive(mesh, both));
-    replace_cells(mesh, both);
+    const auto inserted = replace_cells(mesh, both).vertices;
     EXPECT_EQ(verify(mesh), "");
+    ASSERT_EQ(inserted, (std::vector{Vertex(0), Vertex(7)}));  // the free slot, then a new one
+    const Vertex p = inserted[0], q = inserted[1];
     EXPECT_EQ(mesh.position[p], first);
     EXPECT_EQ(mesh.position[q], second);
 
     replace_cells(two_steps, insertion(two_steps, t, first));
     replace_cells(two_steps, edge_split(two_steps, {p, two_steps.tets[t][1]}));
     EXPECT_EQ(count_tets(two_steps), count_tets(mesh));
+}
+
+TEST(ReplaceCells, AProposalOutlivesOthersThatInsert) {
+    Mesh mesh = cube_of_tets(2);
+    const std::size_t vertices = mesh.position.size();
+    const Cavity first = insertion(mesh, Tet(0), centroid(mesh, Tet(0)));
+    const Cavity second = insertion(mesh, Tet(7), centroid(mesh, Tet(7)));
+    EXPECT_EQ(replace_cells(mesh, first).vertices, std::vector{Vertex(vertices)});
+    EXPECT_EQ(replace_cells(mesh, second).vertices, std::vector{Vertex(vertices + 1)});
+    EXPECT_EQ(verify(mesh), "");
 }
 
 TEST(ReplaceCells, FreesAnInsertedVertexThatNoTetTook) {
@@ -222,6 +231,11 @@ TEST(ReplaceCells, RefusesVerticesThatNobodyMade) {
     Cavity cavity = insertion(mesh, Tet(0), centroid(mesh, Tet(0)));
     cavity.inserted.clear();
     expect_refused(mesh, cavity, "an added cell has a vertex that does not exist");
+    for (Vertex unknown : {Vertex{}, Vertex(5)}) {
+        Cavity other = facet_removal(mesh, {Tet(0), 3});
+        other.added.front().vertices[0] = unknown;
+        expect_refused(mesh, other, "an added cell has a vertex that does not exist");
+    }
 }
 
 }  // namespace

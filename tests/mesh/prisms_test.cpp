@@ -158,10 +158,10 @@ TEST(Layer, GoesAlongWhenAMeshIsCompacted) {
     Cavity put_in{{t}, {}, {centroid(mesh, t)}, 0, 0};
     for (std::size_t i = 0; i < 4; ++i) {
         NewTet added{corners, mesh.region[t]};
-        added.vertices[i] = next_vertex(mesh);
+        added.vertices[i] = inserted_vertex(0);
         put_in.added.push_back(added);
     }
-    const std::vector<Tet> four = replace_cells(mesh, put_in);
+    const std::vector<Tet> four = replace_cells(mesh, put_in).cells;
     ASSERT_EQ(verify(mesh), "");
     replace_cells(mesh, {four, {{corners, Region(1)}}, {}, 0, 0});
     ASSERT_EQ(verify(mesh), "");

@@ -16,7 +16,7 @@ NewTet with_vertex_replaced(const Mesh& mesh, Tet t, Vertex old_vertex, Vertex n
 Cavity insertion(const Mesh& mesh, Tet t, const Vec3& place) {
     Cavity cavity{{t}, {}, {place}};
     for (Vertex v : mesh.tets[t]) {
-        cavity.added.push_back(with_vertex_replaced(mesh, t, v, next_vertex(mesh)));
+        cavity.added.push_back(with_vertex_replaced(mesh, t, v, inserted_vertex(0)));
         cavity.added.back().patch = {};
     }
     return cavity;
@@ -53,7 +53,7 @@ Cavity edge_split(const Mesh& mesh, Edge e) {
     Cavity cavity{shell(mesh, e).value().tets, {}, {(mesh.position[e.a] + mesh.position[e.b]) / 2}};
     for (Tet t : cavity.removed)
         for (Vertex end : {e.a, e.b})
-            cavity.added.push_back(with_vertex_replaced(mesh, t, end, next_vertex(mesh)));
+            cavity.added.push_back(with_vertex_replaced(mesh, t, end, inserted_vertex(0)));
     return cavity;
 }
 
@@ -65,13 +65,10 @@ Cavity edge_collapse(const Mesh& mesh, Edge e) {
 }
 
 bool all_positive(const Mesh& mesh, const Cavity& cavity) {
-    const auto place = [&](Vertex v) {
-        for (std::size_t k = 0; k < cavity.inserted.size(); ++k)
-            if (v == next_vertex(mesh, k)) return cavity.inserted[k];
-        return mesh.position[v];
-    };
-    for (const auto& [v, region, patch] : cavity.added)
-        if (orient3d(place(v[0]), place(v[1]), place(v[2]), place(v[3])) <= 0) return false;
+    for (const auto& [v, region, patch] : cavity.added) {
+        const auto place = [&](std::size_t corner) { return place_in(mesh, cavity, v[corner]); };
+        if (orient3d(place(0), place(1), place(2), place(3)) <= 0) return false;
+    }
     return true;
 }
 

@@ -27,6 +27,13 @@ namespace kropla {
 /// The vertex `e.a` is drawn along the edge to `e.b`; its other tets keep their region and patches.
 [[nodiscard]] Cavity edge_collapse(const Mesh& mesh, Edge e);
 
+/// Where a vertex of the proposal is, be it one of the mesh or one that is inserted.
+[[nodiscard]] inline Vec3 place_in(const Mesh& mesh, const Cavity& cavity, Vertex v) {
+    for (std::size_t k = 0; k < cavity.inserted.size(); ++k)
+        if (v == inserted_vertex(k)) return cavity.inserted[k];
+    return mesh.position[v];
+}
+
 /// Whether each added tet is positively oriented (exact predicate).
 [[nodiscard]] bool all_positive(const Mesh& mesh, const Cavity& cavity);
 

@@ -119,9 +119,8 @@ Changed change_at_random(Mesh& mesh, int count, Random& random) {
     for (int done = 0; done < count;) {
         const auto cavity = try_somewhere(mesh, kinds[random.below(6)], random);
         if (!cavity) continue;
-        for (std::size_t k = 0; k < cavity->inserted.size(); ++k)
-            changed.vertices.push_back(next_vertex(mesh, k));
-        const auto added = replace_cells(mesh, *cavity);
+        const auto [added, inserted] = replace_cells(mesh, *cavity);
+        changed.vertices.insert(changed.vertices.end(), inserted.begin(), inserted.end());
         changed.tets.insert(changed.tets.end(), added.begin(), added.end());
         changed.tets.insert(changed.tets.end(), cavity->removed.begin(), cavity->removed.end());
         const Vertex v = mesh.tets[added.front()][random.below(4)];

@@ -63,7 +63,7 @@ TEST(MirrorCorner, LeadsBackFromEveryFacet) {
 
 TEST(AllTets, LeavesOutFreeSlots) {
     Mesh mesh = shell_of_edge(3);
-    auto made = replace_cells(mesh, edge_removal(mesh, axis));  // two
+    auto made = replace_cells(mesh, edge_removal(mesh, axis)).cells;  // two
     std::ranges::sort(made);
     EXPECT_EQ(mesh.tets.size(), 3u);
     EXPECT_EQ(all_tets(mesh), made);

@@ -41,7 +41,7 @@ AdaptedMesh swapped_mesh(Mesh mesh) {
             if (!n.exists() || a.before.region[n] != region) continue;
             const Cavity cavity = facet_removal(a.after, {t, corner});
             if (!all_positive(a.after, cavity)) continue;
-            const auto added = replace_cells(a.after, cavity);
+            const auto added = replace_cells(a.after, cavity).cells;
             a.changes.cells.insert(a.changes.cells.end(), added.begin(), added.end());
             done.push_back(region);
         }

@@ -58,7 +58,7 @@ AdaptedMesh swapped_in_gap(Mesh mesh) {
             if (!same_tet(a.before, a.after, t) || !same_tet(a.before, a.after, n)) continue;
             const Cavity cavity = facet_removal(a.after, {t, corner});
             if (!all_positive(a.after, cavity)) continue;
-            const auto added = replace_cells(a.after, cavity);
+            const auto added = replace_cells(a.after, cavity).cells;
             a.changes.cells.insert(a.changes.cells.end(), added.begin(), added.end());
         }
     }
