@@ -441,8 +441,14 @@ FileCells read_heeding(const std::filesystem::path& path, const Watch* watch) {
 FileCells read_vtu_cells(const std::filesystem::path& path) { return read_heeding(path, nullptr); }
 
 Frame make_frame(FileCells cells) {
-    Frame frame = {make_mesh(std::move(cells.position), std::move(cells.tets), std::move(cells.region)),
-                   std::move(cells.fields)};
+    const auto mesh = [&] {
+        try {
+            return make_mesh(std::move(cells.position), std::move(cells.tets), std::move(cells.region));
+        } catch (const std::invalid_argument& error) {  // the arrays are a file's
+            throw FileError(error.what());
+        }
+    };
+    Frame frame = {mesh(), std::move(cells.fields)};
     const BoundingBox box = bounding_box(frame.mesh);
     for (const Tet t : frame.mesh.tets.indices())
         for (int corner = 0; corner < 4; ++corner) {
@@ -458,8 +464,6 @@ Frame read_vtu(const std::filesystem::path& path, const Watch* watch) {
     FileCells cells = read_heeding(path, watch);
     try {
         return make_frame(std::move(cells));
-    } catch (const std::invalid_argument& error) {
-        fail(path, error.what());
     } catch (const FileError& error) {
         fail(path, error.what());
     }
