@@ -63,35 +63,35 @@ void check_exchange(const HeatExchange& exchange, const std::string& key) {
 
 std::string region_key(const HeatOptions& options, std::size_t region) {
     const std::string& name = options.regions[region].name;
-    if (!name.empty()) return "heat.region." + name;
-    return region == 0 ? "heat.region.surroundings" : "heat.region.(body " + std::to_string(region) + ")";
+    if (!name.empty()) return options.key + ".region." + name;
+    return options.key + (region == 0 ? ".region.surroundings" : ".region.(body " + std::to_string(region) + ")");
 }
 
 std::string surface_key(const HeatOptions& options, std::size_t region) {
     const std::string& name = options.regions[region].name;
-    return name.empty() ? "heat.surface.(body " + std::to_string(region) + ")" : "heat.surface." + name;
+    return options.key + ".surface." + (name.empty() ? "(body " + std::to_string(region) + ")" : name);
 }
 
-std::string face_key(std::size_t face) {
+std::string face_key(const HeatOptions& options, std::size_t face) {
     constexpr std::array<const char*, 6> names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-    return std::string("heat.face.") + names[face];
+    return options.key + ".face." + names[face];
 }
 
 void check_heat(const HeatOptions& options, const Mesh& mesh) {
     for (std::size_t i = 0; i < options.regions.size(); ++i) check_region(options.regions[i], region_key(options, i));
     const std::size_t needed = count_regions(mesh);
     if (options.regions.size() < needed) {
-        throw CaseError("heat: the mesh has " + std::to_string(needed) +
+        throw CaseError(options.key + ": the mesh has " + std::to_string(needed) +
                         " regions, materials are given for " + std::to_string(options.regions.size()));
     }
     for (std::size_t body = 1; body <= options.surfaces.size(); ++body)
         check_exchange(options.surfaces[body - 1].exchange, surface_key(options, body));
     for (std::size_t f = 0; f < options.faces.size(); ++f) {
         const HeatFace& face = options.faces[f];
-        check_exchange(face.exchange, face_key(f));
-        if (face.kind == HeatFace::Kind::value && !face.quantity) throw CaseError(face_key(f) + ".value is not given");
+        check_exchange(face.exchange, face_key(options, f));
+        if (face.kind == HeatFace::Kind::value && !face.quantity) throw CaseError(face_key(options, f) + ".value is not given");
         if (face.kind == HeatFace::Kind::flux && !face.quantity && !face.power)
-            throw CaseError(face_key(f) + ".flux is not given");
+            throw CaseError(face_key(options, f) + ".flux is not given");
     }
 }
 

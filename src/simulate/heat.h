@@ -103,6 +103,7 @@ struct HeatFace {
 /// What happens at the surface of a body, besides conduction through it.
 struct HeatSurface {
     Quantity flux = {};   // [W/m^2] set free there
+    std::vector<double> at_vertices = {};  // [W/m^2] more of it, at each vertex of the surface, in order
     Quantity power = {};  // [W] if given, the flux is scaled so that this is set free
     HeatExchange exchange = {};
 };
@@ -111,13 +112,14 @@ struct HeatOptions {
     std::vector<HeatRegion> regions;        // region 0 (the surroundings), 1, ...
     std::array<HeatFace, 6> faces = {};     // x min, x max, y min, y max, z min, z max
     std::vector<HeatSurface> surfaces = {}; // of bodies 1, 2, ...; fewer: none of the others
+    std::string key = "heat";               // of what messages speak
 };
 
 /// What messages call a region, "heat.region.droplet", a body's surface, "heat.surface.droplet", and a face of the box,
 /// "heat.face.z_min".
 [[nodiscard]] std::string region_key(const HeatOptions& options, std::size_t region);
 [[nodiscard]] std::string surface_key(const HeatOptions& options, std::size_t region);
-[[nodiscard]] std::string face_key(std::size_t face);
+[[nodiscard]] std::string face_key(const HeatOptions& options, std::size_t face);
 
 /// Throws CaseError, naming the key below `heat`, if a material is not positive (at any temperature of a table), an
 /// initial value not finite, solidus not below liquidus, a face without its quantity, or a region of the mesh without

@@ -25,6 +25,7 @@ struct HeatStep {
     const Array<Region, Array<Vertex, double>>& source;  // its mean at the region's vertices [W/m^3], or empty
     double dt;                                       // [s]
 
+    Region only = {};                  // the region that is stepped; none: all of them
     Array<Region, Enthalpy> enthalpy = {};
     Array<Region, MaterialState> material = {};
     Array<Vertex, double> guess = {};  // [K] about which all that is not linear is taken as linear

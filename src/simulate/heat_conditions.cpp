@@ -131,6 +131,11 @@ public:
             conditions_.shares.push_back({.vertex = shares.vertices[k], .door = door, .flux = means[k] * shares.size[k]});
     }
 
+    void add_known(const Shares& shares, const std::vector<double>& flux, Door door) {
+        for (std::size_t k = 0; k < flux.size(); ++k)
+            conditions_.shares.push_back({.vertex = shares.vertices[k], .door = door, .flux = flux[k] * shares.size[k]});
+    }
+
     void add_exchange(const Shares& shares, const HeatExchange& exchange, Door door, const std::string& key) {
         if (!exchange.coefficient && !exchange.emissivity) return;
         for (std::size_t k = 0; k < shares.vertices.size(); ++k) {
@@ -194,19 +199,22 @@ HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const He
         const Door door{Door::Kind::face, f};
         if (face.kind == HeatFace::Kind::value) {
             for (Vertex v : shares.vertices)
-                fix(v, value_at(face.quantity, current.position[v], step.end(), face_key(f) + ".value"), door);
+                fix(v, value_at(face.quantity, current.position[v], step.end(), face_key(options, f) + ".value"), door);
         } else if (face.kind == HeatFace::Kind::flux) {
-            boundary.add_flux(shares, face.quantity, face.power, door, face_key(f));
+            boundary.add_flux(shares, face.quantity, face.power, door, face_key(options, f));
         } else {
-            boundary.add_exchange(shares, face.exchange, door, face_key(f));
+            boundary.add_exchange(shares, face.exchange, door, face_key(options, f));
         }
     }
     for (std::size_t body = 1; body <= options.surfaces.size(); ++body) {
         const HeatSurface& surface = options.surfaces[body - 1];
-        if (!surface.flux && !surface.power && !surface.exchange.coefficient && !surface.exchange.emissivity) continue;
+        if (!surface.flux && !surface.power && surface.at_vertices.empty() && !surface.exchange.coefficient &&
+            !surface.exchange.emissivity)
+            continue;
         const Shares shares = shares_of_surface(current, region_surface(current, Region(body)).interface);
         const Door door{Door::Kind::surface, body};
         boundary.add_flux(shares, surface.flux, surface.power, door, surface_key(options, body));
+        boundary.add_known(shares, surface.at_vertices, door);
         boundary.add_exchange(shares, surface.exchange, door, surface_key(options, body));
     }
     return conditions;

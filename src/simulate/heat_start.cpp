@@ -3,7 +3,7 @@
 
 #include <kropla/base/error.h>
 #include "simulate/elements.h"
-#include "simulate/heat_start.h"
+#include "simulate/heat_step.h"
 #include "simulate/step_mean.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ HeatOptions at_start(HeatOptions options) {
         face.exchange = at_start(face.exchange);
     }
     for (HeatSurface& surface : options.surfaces)
-        surface = {at_start(surface.flux), at_start(surface.power), at_start(surface.exchange)};
+        surface = {at_start(surface.flux), surface.at_vertices, at_start(surface.power), at_start(surface.exchange)};
     return options;
 }
 

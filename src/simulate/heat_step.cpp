@@ -4,10 +4,9 @@
 #include <kropla/base/error.h>
 #include "simulate/bounded.h"
 #include "simulate/carried.h"
-#include "simulate/flow_potential.h"
 #include "simulate/heat_cell.h"
 #include "simulate/heat_conditions.h"
-#include "simulate/heat_start.h"
+#include "simulate/heat_step.h"
 #include "simulate/solver.h"
 #include "simulate/stop.h"
 #include "simulate/surface_flux.h"
@@ -27,13 +26,6 @@ constexpr double noticeable = 1e-3;  // [-] of the range: a new extremum that is
 constexpr double of_range = 1e-11;   // [-] of the range, and
 constexpr double of_largest = 1e-12; // [-] of the largest temperature: what a solution leaves
 constexpr double settled = 1e-12;  // [-] of the largest temperature: a pass that changes less is the last
-
-std::vector<Region> regions_that(Carried move, const HeatOptions& options) {
-    std::vector<Region> regions;
-    for (std::size_t r = 0; r < options.regions.size(); ++r)
-        if (options.regions[r].carried == move) regions.push_back(Region(r));
-    return regions;
-}
 
 Array<Region, Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& current, const HeatOptions& options) {
     Array<Region, Array<Vertex, Vec3>> carried(options.regions.size());
@@ -84,7 +76,7 @@ class HeatSolution {
 public:
     HeatSolution(const Ranks& ranks, HeatStep& step, const HeatConditions& conditions)
         : ranks_(ranks), step_(step), conditions_(conditions),
-          pattern_(make_pattern(step.current, living_cells(step.current), ranks)), after_(step.old_temperature),
+          pattern_(make_pattern(step.current, living_cells(step.current, step.only), ranks)), after_(step.old_temperature),
           marked_(vertices().size(), 0), allowance_(pattern_.rows.count()), linear_(is_linear()) {
         for (const FixedValue& fixed : conditions.fixed) after_[fixed.vertex] = fixed.value;
         fill_old_enthalpies();
@@ -114,7 +106,7 @@ public:
         report.passes = passes_;
         report.diffused = static_cast<std::size_t>(std::ranges::count(marked_, 1));
         report.error = error_;
-        report.surfaces = surface_fluxes(ranks_, step_.current, assembled, step_.dt);
+        if (!step_.only.exists()) report.surfaces = surface_fluxes(ranks_, step_.current, assembled, step_.dt);
         report.extremes = extremes(step_, vertices(), conditions_, after_);
         report.balance = balance(assembled);
         return report;
@@ -188,7 +180,7 @@ private:
                       [&](const auto& cell) { return !linear_ || systems_are_to_change(cell); }, systems_, ranks_.watch);
             const LinearSystem system = assembled();
             heed(ranks_);  // a rank that was stopped in there is met before anything is done together
-            const SolverChoice choice{.name = "heat", .preconditioner = preconditioner_for(ranks_, system)};
+            const SolverChoice choice{.name = step_.options.key, .preconditioner = preconditioner_for(ranks_, system)};
             const Solution solution = solve(ranks_, system, choice);
             iterations_ = std::max(iterations_, solution.iterations);
             error_ = solution.error;
@@ -196,8 +188,8 @@ private:
             const double change = take(solution.value);
             if (linear_ || change <= settled) return;
             if (pass == most_passes)
-                throw SolverError("heat: the temperature does not settle, it still changes by " + std::to_string(change) +
-                                  " of the largest in pass " + std::to_string(pass));
+                throw SolverError(step_.options.key + ": the field does not settle, it still changes by " + std::to_string(change) +
+                                  " of its largest value in pass " + std::to_string(pass));
         }
     }
 
@@ -295,8 +287,8 @@ private:
     /// What came in at this vertex but is not accounted for by the cells and what acts on it: what keeps it fixed [J].
     [[nodiscard]] HeatBalance balance(const Assembled& assembled) const {
         HeatBalance sum;
-        sum.before = energy(step_.before, step_.options, step_.old_temperature);
-        sum.after = energy(step_.current, step_.options, after_);
+        sum.before = energy(step_.before, step_.options, step_.old_temperature, step_.only);
+        sum.after = energy(step_.current, step_.options, after_, step_.only);
         sum.surfaces.assign(step_.options.surfaces.size(), 0.0);
         sum.sources.assign(step_.options.regions.size(), 0.0);
         sum.held.assign(step_.options.regions.size(), 0.0);
@@ -307,7 +299,7 @@ private:
             if (share.door.kind == Door::Kind::face) sum.faces[share.door.number] += in;
             else sum.surfaces[share.door.number - 1] += in;
         }
-        for_each_cell(living_cells(step_.current), [&](const auto& cell) {
+        for_each_cell(living_cells(step_.current, step_.only), [&](const auto& cell) {
             const Region region = cell_region(step_.current, cell);
             const auto source = at_corners(conditions_.source[region], cell_vertices(step_.current, cell));
             const auto points = cell_points(corners(step_.current, cell));
@@ -374,11 +366,11 @@ double long_enough(const Mesh& mesh, const HeatOptions& options) {
 }
 
 HeatStep heat_step(const Mesh& before, const Mesh& current, const HeatOptions& options, const HeatConditions& conditions,
-                   const NodalField& temperature, double dt) {
+                   const Array<Vertex, double>& values, double dt) {
     return {.before = before,
             .current = current,
             .options = options,
-            .old_temperature = temperature.values,
+            .old_temperature = values,
             .potential = Array<Region, Array<Vertex, double>>(options.regions.size()),
             .carried = carry_bodies(before, current, options),
             .source = conditions.source,
@@ -389,27 +381,40 @@ HeatStep heat_step(const Mesh& before, const Mesh& current, const HeatOptions& o
 
 }  // namespace
 
+std::vector<Region> regions_that(Carried move, const HeatOptions& options) {
+    std::vector<Region> regions;
+    for (std::size_t r = 0; r < options.regions.size(); ++r)
+        if (options.regions[r].carried == move) regions.push_back(Region(r));
+    return regions;
+}
+
 double HeatBalance::brought() const {
     double sum = std::accumulate(faces.begin(), faces.end(), 0.0);
     for (const auto* parts : {&surfaces, &sources, &held}) sum = std::accumulate(parts->begin(), parts->end(), sum);
     return sum;
 }
 
-HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
-                     NodalField& temperature, double t, double dt) {
-    check_heat(options, current);
-    if (!(dt > 0)) throw CaseError("heat: the step must be positive, got " + std::to_string(dt) + " s");
-    const DisplacedFlow flow =
-        solve_displaced_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt);
+HeatReport step_heat_in(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
+                        const DisplacedFlow& flow, Region only, Array<Vertex, double>& values, double t, double dt) {
     const HeatConditions conditions = heat_conditions(before, current, options, t, dt, ranks.watch);
-    HeatStep step = heat_step(before, current, options, conditions, temperature, dt);
+    HeatStep step = heat_step(before, current, options, conditions, values, dt);
     step.potential = flow.potential;
+    step.only = only;
     HeatSolution solution(ranks, step, conditions);
     solution.solve_all();
     HeatReport report = solution.report();
     report.potential_iterations = flow.iterations;
-    temperature.values = solution.after();
+    values = solution.after();
     return report;
+}
+
+HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
+                     NodalField& temperature, double t, double dt) {
+    check_heat(options, current);
+    if (!(dt > 0)) throw CaseError(options.key + ": the step must be positive, got " + std::to_string(dt) + " s");
+    const DisplacedFlow flow =
+        solve_displaced_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt);
+    return step_heat_in(ranks, before, current, options, flow, {}, temperature.values, t, dt);
 }
 
 void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, NodalField& field) {
@@ -426,7 +431,7 @@ void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& optio
             }
         });
     }
-    HeatStep step = heat_step(mesh, mesh, options, conditions, field, dt);
+    HeatStep step = heat_step(mesh, mesh, options, conditions, field.values, dt);
     HeatSolution solution(ranks, step, conditions);
     solution.solve_all();
     field.values = solution.after();
