@@ -3,6 +3,7 @@
 
 #include "app/case_body.h"
 #include "app/case_heat.h"
+#include "app/case_species.h"
 #include "app/case_parameters.h"
 #include "app/case_setting.h"
 #include "app/case_table.h"
@@ -120,7 +121,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     apply_settings(settings, table);
     CaseReading reading{.file = name};
     const CaseTable file(reading, "", table);
-    file.allow({"parameters", "domain", "body", "size", "quality", "time", "heat", "output", "random"});
+    file.allow({"parameters", "domain", "body", "size", "quality", "time", "heat", "species", "output", "random"});
     if (file.has("parameters")) read_parameters(file.table("parameters"), reading);
     Case it;
     it.domain.box = read_box(file.table("domain"));
@@ -129,6 +130,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
+    read_species(file, it);
     if (file.has("output")) it.output = read_output(file.table("output"));
     if (file.has("random")) it.random = read_random(file.table("random"));
     if (file.has("parameters"))

@@ -3,6 +3,7 @@
 #include <kropla/adapt/adapt.h>
 #include <kropla/domain/domain.h>
 #include <kropla/simulate/heat.h>
+#include <kropla/simulate/species.h>
 
 #include <array>
 #include <cstdint>
@@ -57,6 +58,11 @@ struct WrittenHeat {
     std::vector<WrittenKeys> surfaces;  // per body
     std::array<std::string, 6> faces;   // per face of the box
 };
+struct WrittenSpecies {
+    std::vector<WrittenKeys> regions;   // per region
+    std::vector<WrittenKeys> surfaces;  // per body
+    WrittenKeys faces;
+};
 
 /// All that a run is told, SI units.
 struct Case {
@@ -64,11 +70,13 @@ struct Case {
     QualityPlan quality;
     TimePlan time;
     std::optional<HeatOptions> heat;  // nothing: the mesh moves, nothing is simulated
+    std::vector<Species> species;
     OutputPlan output;
     RandomSeed random;
 
     std::vector<WrittenBody> written_bodies;  // per body
     WrittenHeat written_heat;
+    std::vector<WrittenSpecies> written_species;
     std::vector<Parameter> parameters;
     std::map<std::string, std::string> written_numbers;  // by full key, as TOML: those that are expressions of parameters
 };

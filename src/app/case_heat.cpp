@@ -1,8 +1,7 @@
 // [heat]: materials, sources, and what happens at surfaces and faces.
 #include "app/case_heat.h"
 
-#include "app/case_property.h"
-#include "simulate/step_mean.h"
+#include "app/noted_table.h"
 
 #include <fmt/format.h>
 
@@ -12,87 +11,34 @@
 namespace kropla {
 namespace {
 
-/// A place that is special to no formula: expressions are tried there.
-Vec3 probe_of(const Box& box) {
-    const Vec3 span = box.max - box.min;
-    return box.min + Vec3{0.37 * span.x, 0.41 * span.y, 0.43 * span.z};
+HeatExchange read_exchange(NotedTable& noted) {
+    const CaseTable& table = noted.table();
+    HeatExchange exchange{noted.quantity("coefficient"), noted.quantity("emissivity"), {}};
+    const bool is_some = exchange.coefficient || exchange.emissivity;
+    if (is_some && !table.has("ambient"))
+        table.refuse("ambient", "is missing; it must be the temperature [K] with which heat is exchanged");
+    if (!is_some && table.has("ambient"))
+        table.refuse("ambient", "needs a coefficient [W/(m^2 K)] or an emissivity beside it");
+    if (exchange.coefficient && noted.at_probe(exchange.coefficient) < 0)
+        table.refuse_value("coefficient", "must be at least 0");
+    if (exchange.emissivity && !(noted.at_probe(exchange.emissivity) >= 0 && noted.at_probe(exchange.emissivity) <= 1))
+        table.refuse_value("emissivity", "must be from 0 to 1");
+    exchange.ambient = noted.quantity("ambient");
+    return exchange;
 }
 
-Quantity quantity(const Formula& formula) {
-    if (!formula.written.starts_with('"')) return Constant{formula.value(0)};
-    return [f = formula.value](const Vec3& place, double t) { return f(t, place); };
-}
-
-/// A table of [heat] while it is read, and how what was read is written.
-class HeatTable {
-public:
-    HeatTable(const CaseTable& table, const Vec3& probe, WrittenKeys& written)
-        : table_(table), probe_(probe), written_(written) {}
-
-    [[nodiscard]] bool has(std::string_view key) const { return table_.has(key); }
-    [[nodiscard]] const CaseTable& table() const { return table_; }
-
-    /// Empty if the key is not there.
-    Quantity quantity_of(std::string_view key) {
-        if (!table_.has(key)) return {};
-        const Formula formula = table_.formula(key, Variables::time_and_place, probe_);
-        written_.emplace_back(key, formula.written);
-        return quantity(formula);
-    }
-    double number(std::string_view key) {
-        const double value = table_.number(key);
-        written_.emplace_back(key, toml_number(value));
-        return value;
-    }
-    Property property(std::string_view key, double usual_temperature) {
-        const WrittenProperty read = read_property(table_, key, usual_temperature);
-        written_.emplace_back(key, read.written);
-        return read.property;
-    }
-    void note(std::string_view key, std::string written) { written_.emplace_back(key, std::move(written)); }
-
-    HeatExchange exchange() {
-        HeatExchange exchange{quantity_of("coefficient"), quantity_of("emissivity"), {}};
-        const bool is_some = exchange.coefficient || exchange.emissivity;
-        if (is_some && !table_.has("ambient"))
-            table_.refuse("ambient", "is missing; it must be the temperature [K] with which heat is exchanged");
-        if (!is_some && table_.has("ambient"))
-            table_.refuse("ambient", "needs a coefficient [W/(m^2 K)] or an emissivity beside it");
-        for (const auto& [key, quantity, most] : {std::tuple{"coefficient", &exchange.coefficient, 0.0},
-                                                  std::tuple{"emissivity", &exchange.emissivity, 1.0}}) {
-            if (!*quantity) continue;
-            const double value = (*quantity)(probe_, 0);
-            if (value < 0 || (most > 0 && value > most))
-                table_.refuse_value(key, most > 0 ? "must be from 0 to 1" : "must be at least 0");
-        }
-        exchange.ambient = quantity_of("ambient");
-        return exchange;
-    }
-
-    /// A distribution, and the whole of it.
-    std::pair<Quantity, Quantity> flux_and_power(std::string_view key) {
-        Quantity flux = quantity_of(key), power = quantity_of("power");
-        return {std::move(flux), std::move(power)};
-    }
-
-private:
-    const CaseTable& table_;
-    Vec3 probe_;
-    WrittenKeys& written_;
-};
-
-HeatStart read_start(HeatTable& table) {
+HeatStart read_start(NotedTable& table) {
     if (table.table().holds_text("initial") && table.table().text("initial") == "steady") {
         table.note("initial", "\"steady\"");
         HeatStart start;
         start.steady = true;
         return start;
     }
-    if (table.table().holds_text("initial")) return table.quantity_of("initial");
+    if (table.table().holds_text("initial")) return table.quantity("initial");
     return table.number("initial");
 }
 
-void read_latent_heat(HeatTable& table, HeatMaterial& material) {
+void read_latent_heat(NotedTable& table, HeatMaterial& material) {
     const CaseTable& given = table.table();
     const bool any = given.has("latent_heat") || given.has("solidus") || given.has("liquidus");
     if (!any) return;
@@ -104,7 +50,7 @@ void read_latent_heat(HeatTable& table, HeatMaterial& material) {
         given.refuse_value("solidus", fmt::format("must be below liquidus, {}", toml_number(material.liquidus)));
 }
 
-HeatRegion read_region(HeatTable table) {
+HeatRegion read_region(NotedTable table) {
     const CaseTable& given = table.table();
     given.allow({"conductivity", "density", "specific_heat", "latent_heat", "solidus", "liquidus", "initial", "source",
                  "power", "held"});
@@ -119,15 +65,17 @@ HeatRegion read_region(HeatTable table) {
     region.material.density = table.property("density", usual);
     region.material.specific_heat = table.property("specific_heat", usual);
     read_latent_heat(table, region.material);
-    std::tie(region.source, region.power) = table.flux_and_power("source");
+    region.source = table.quantity("source");
+    region.power = table.quantity("power");
     return region;
 }
 
-HeatSurface read_surface(HeatTable table) {
+HeatSurface read_surface(NotedTable table) {
     table.table().allow({"flux", "power", "coefficient", "emissivity", "ambient"});
     HeatSurface surface;
-    std::tie(surface.flux, surface.power) = table.flux_and_power("flux");
-    surface.exchange = table.exchange();
+    surface.flux = table.quantity("flux");
+    surface.power = table.quantity("power");
+    surface.exchange = read_exchange(table);
     return surface;
 }
 
@@ -142,7 +90,7 @@ HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
     }
     const CaseTable table = faces.table(key);
     WrittenKeys keys;
-    HeatTable face(table, probe, keys);
+    NotedTable face(table, probe, keys);
     table.allow({"value", "flux", "power", "coefficient", "emissivity", "ambient"});
     const bool value = table.has("value"), flux = table.has("flux") || table.has("power");
     const bool exchange = table.has("coefficient") || table.has("emissivity") || table.has("ambient");
@@ -152,17 +100,16 @@ HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
     HeatFace read;
     if (value) {
         read.kind = HeatFace::Kind::value;
-        read.quantity = face.quantity_of("value");
+        read.quantity = face.quantity("value");
     } else if (flux) {
         read.kind = HeatFace::Kind::flux;
-        std::tie(read.quantity, read.power) = face.flux_and_power("flux");
+        read.quantity = face.quantity("flux");
+        read.power = face.quantity("power");
     } else {
         read.kind = HeatFace::Kind::exchange;
-        read.exchange = face.exchange();
+        read.exchange = read_exchange(face);
     }
-    std::vector<std::string> parts;
-    for (const auto& [name, text] : keys) parts.push_back(fmt::format("{} = {}", name, text));
-    written = fmt::format("{{ {} }}", fmt::join(parts, ", "));
+    written = inline_table(keys);
     return read;
 }
 
@@ -184,7 +131,7 @@ HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat&
     written.regions.assign(names.size(), {});
     for (std::size_t r = 0; r < names.size(); ++r) {
         const CaseTable region = regions.table(names[r]);
-        heat.regions.push_back(read_region(HeatTable(region, probe, written.regions[r])));
+        heat.regions.push_back(read_region(NotedTable(region, probe, written.regions[r])));
         heat.regions[r].name = names[r];
         heat.regions[r].carried = r == 0 ? Carried::at_rest : Carried::with_mesh;
     }
@@ -197,7 +144,7 @@ HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat&
         for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
             if (!surfaces.has(names[body + 1])) continue;
             const CaseTable surface = surfaces.table(names[body + 1]);
-            heat.surfaces[body] = read_surface(HeatTable(surface, probe, written.surfaces[body]));
+            heat.surfaces[body] = read_surface(NotedTable(surface, probe, written.surfaces[body]));
         }
     }
 

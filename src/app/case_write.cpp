@@ -67,6 +67,22 @@ std::string heat(const Case& it) {
     return text;
 }
 
+std::string species(const Case& it, std::size_t number) {
+    const WrittenSpecies& written = it.written_species[number];
+    const std::string table = fmt::format("species[{}]", number);
+    std::string text = fmt::format("\n[[species]]\nname = {}\n", toml_text(it.species[number].name));
+    const auto add = [&](const char* kind, std::size_t region, const WrittenKeys& of) {
+        const std::string name = region_name(it.domain, region);
+        if (of.empty()) return;
+        text += fmt::format("[species.{}.{}]\n", kind, toml_text(name)) +
+                keys(it, fmt::format("{}.{}.{}", table, kind, name), of);
+    };
+    for (std::size_t r = 0; r < written.regions.size(); ++r) add("region", r, written.regions[r]);
+    for (std::size_t body = 0; body < written.surfaces.size(); ++body) add("surface", body + 1, written.surfaces[body]);
+    if (!written.faces.empty()) text += "[species.face]\n" + keys(it, table + ".face", written.faces);
+    return text;
+}
+
 std::string quality(const Case& it) {
     const QualityPlan& plan = it.quality;
     const std::string text = "\n[quality]\n" + line(it, "quality", "max_aspect_ratio", plan.max_aspect_ratio);
@@ -96,6 +112,7 @@ std::string to_toml(const Case& it) {
     text += quality(it);
     text += "\n[time]\n" + line(it, "time", "end", it.time.end) + line(it, "time", "steps", it.time.steps);
     if (it.heat) text += heat(it);
+    for (std::size_t s = 0; s < it.species.size(); ++s) text += species(it, s);
     text += "\n[output]\n" + line(it, "output", "every", it.output.every);
     return text + "\n[random]\n" + line(it, "random", "seed", it.random.seed);
 }

@@ -13,6 +13,7 @@
 #include "app/run_output.h"
 #include "app/same_case.h"
 #include "app/solver_options.h"
+#include "app/species_fields.h"
 #include "app/step.h"
 #include <kropla/base/error.h>
 #include "report/page.h"
@@ -46,6 +47,7 @@ State start(const Case& it, const Ranks& ranks) {
         check_heat(*it.heat, mesh);
         fields.push_back(initial_temperature(ranks, mesh, *it.heat));
     }
+    std::ranges::move(initial_species(mesh, it), std::back_inserter(fields));
     return {MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it, watch)), std::move(fields)};
 }
 

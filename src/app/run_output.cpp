@@ -3,6 +3,7 @@
 #include "app/body_sizes.h"
 #include "app/ending.h"
 #include "app/run_folder.h"
+#include "app/species_fields.h"
 #include "app/step_row.h"
 #include <kropla/base/error.h>
 #include "io/file.h"
@@ -85,7 +86,8 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
 
 void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* watch) {
     if (!speak_) return;
-    write_vtu(folder_ / frame_name(step), state.moving.reference(), state.fields, watch);
+    const Mesh& mesh = state.moving.reference();
+    write_vtu(folder_ / frame_name(step), mesh, shown_fields(mesh, it_, state.fields), watch);
     series_.push_back({state.moving.time(), frame_name(step)});
     write_pvd(folder_ / "frames.pvd", series_);
 }

@@ -1,5 +1,7 @@
 #include "app/step.h"
 
+#include "app/case_heat.h"
+#include "app/species_fields.h"
 #include "simulate/cells.h"
 #include <kropla/simulate/heat.h>
 
@@ -57,19 +59,16 @@ std::vector<StepWarning> beyond_tables(const HeatOptions& heat, const Mesh& mesh
 class Simulation {
 public:
     Simulation(State& state, const Case& it, const Ranks& ranks) : state_(state), it_(it), ranks_(ranks) {
-        if (!it.heat) return;
-        if (proportional(*it.heat)) {
-            fields_.per_vertex(temperature(), {.weight = capacities(*it.heat)});
-            return;
-        }
-        enthalpy_ = enthalpies(state.moving.reference(), *it.heat, temperature());
-        for (std::size_t r = 0; r < enthalpy_.size(); ++r) fields_.per_vertex(enthalpy_[r], {.only = Region(r)});
-        fields_.per_vertex(temperature());
+        if (it.heat) carry_heat();
+        for (const SpeciesField& field : species_fields(it))
+            fields_.per_vertex(state.fields[field.place].values, {.only = Region(field.region)});
     }
 
     Advanced advance(const StepOptions& options, std::function<void(const Mesh&)> last_look = {}) {
         AdvanceOptions how{.least_dt = options.least_dt, .last_look = std::move(last_look), .watch = ranks_.watch};
         if (it_.heat) how.contents = {[&](const Mesh& mesh) { return energy_on(mesh); }};
+        for (std::size_t s = 0; s < it_.species.size(); ++s)
+            how.contents.push_back([&, s](const Mesh& mesh) { return energy_of(mesh, concentrations(it_, s, state_.fields)); });
         Advanced done = kropla::advance(state_.moving, fields_, options.dt,
                                         [&](const StepToSolve& step) { return solve(step); }, how);
         if (!enthalpy_.empty()) temperature_of(state_.moving.reference(), *it_.heat, enthalpy_, temperature());
@@ -88,15 +87,50 @@ private:
         return enthalpy_.empty() ? energy(mesh, *it_.heat, temperature()) : energy_of(mesh, enthalpy_);
     }
 
+    /// What is carried of the heat: the temperature, or where it does not tell the energy by a factor, enthalpies.
+    void carry_heat() {
+        if (proportional(*it_.heat)) {
+            fields_.per_vertex(temperature(), {.weight = capacities(*it_.heat)});
+            return;
+        }
+        enthalpy_ = enthalpies(state_.moving.reference(), *it_.heat, temperature());
+        for (std::size_t r = 0; r < enthalpy_.size(); ++r) fields_.per_vertex(enthalpy_[r], {.only = Region(r)});
+        fields_.per_vertex(temperature());
+    }
+
     Answer solve(const StepToSolve& step) {
-        if (!it_.heat) return Solved{};
+        if (it_.heat) solve_heat(step);
+        for (std::size_t s = 0; s < it_.species.size(); ++s) solve_species(step, s);
+        return Solved{};
+    }
+
+    void solve_heat(const StepToSolve& step) {
         if (!enthalpy_.empty()) temperature_of(step.before, *it_.heat, enthalpy_, temperature());
         HeatReport heat =
             step_heat(ranks_, step.before, step.current, *it_.heat, state_.fields.front(), step.time, step.dt);
         if (!enthalpy_.empty()) take_enthalpies(step.current);
         report.warnings = beyond_tables(*it_.heat, step.current, temperature(), step.time + step.dt);
         report.heat = std::move(heat);
-        return Solved{};
+    }
+
+    void solve_species(const StepToSolve& step, std::size_t s) {
+        Concentrations values = concentrations(it_, s, state_.fields);
+        report.species.resize(it_.species.size());
+        report.species[s] = step_species(ranks_, step.before, step.current, it_.species[s], materials(), report.heat.surfaces,
+                                         values, step.time, step.dt);
+        for (const SpeciesField& field : species_fields(it_))
+            if (field.species == s) state_.fields[field.place].values = std::move(values[field.region]);
+    }
+
+    /// How materials move.
+    [[nodiscard]] HeatOptions materials() const {
+        if (it_.heat) return *it_.heat;
+        HeatOptions options{.regions = std::vector<HeatRegion>(it_.domain.bodies.size() + 1)};
+        for (std::size_t r = 0; r < options.regions.size(); ++r) {
+            options.regions[r].name = region_name(it_.domain, r);
+            options.regions[r].carried = r == 0 ? Carried::at_rest : Carried::with_mesh;
+        }
+        return options;
     }
 
     State& state_;

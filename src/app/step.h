@@ -27,6 +27,7 @@ struct StepWarning {
 struct StepReport {
     Advanced mesh;
     HeatReport heat;                     // if heat is simulated
+    std::vector<SpeciesReport> species;  // of each
     std::vector<BodyState> bodies;       // at its end
     std::vector<Vec3> velocities;        // [m/s] of the bodies' centroids, in the mean over it
     std::vector<StepWarning> warnings;

@@ -37,9 +37,11 @@ void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 /// What the temperature conserves, where it comes from, how far step and transfer missed it, and what became of values.
-void add_energy(const StepReport& report, StepRow& row) {
+void add_energy(const StepReport& report, const HeatOptions& heat, StepRow& row) {
     const ContentReport energy = report.mesh.contents.empty() ? ContentReport{} : report.mesh.contents.front();
-    const TransferReport transfer = report.mesh.transfer.empty() ? TransferReport{} : report.mesh.transfer.back();
+    const std::size_t temperature = proportional(heat) ? 0 : heat.regions.size();  // after the enthalpies, if these are carried
+    const TransferReport transfer =
+        temperature < report.mesh.transfer.size() ? report.mesh.transfer[temperature] : TransferReport{};
     const double error = energy.after != 0 ? energy.by_transfer / std::abs(energy.after) : 0;
     row.insert(row.end(), {{"energy_integral [J]", energy.after},
                            {"energy_transfer_error", error},
@@ -54,6 +56,22 @@ void add_energy(const StepReport& report, StepRow& row) {
                            {"heat_at_surfaces [W]", sum(balance.surfaces) / dt},
                            {"heat_held [W]", sum(balance.held) / dt},
                            {"energy_error [J]", balance.error()}});
+}
+
+/// What there is of each species, and how far step and transfer missed it.
+void add_species(const StepReport& report, const Case& it, StepRow& row) {
+    for (std::size_t s = 0; s < it.species.size(); ++s) {
+        const std::string& name = it.species[s].name;
+        const std::size_t place = s + (it.heat ? 1 : 0);
+        const ContentReport amount = place < report.mesh.contents.size() ? report.mesh.contents[place] : ContentReport{};
+        double error = 0;
+        if (s < report.species.size())
+            for (const HeatBalance& balance : report.species[s].balance) error += balance.error();
+        row.insert(row.end(), {{fmt::format("{}_integral [kg]", name), amount.after},
+                               {fmt::format("{}_transfer_error", name),
+                                amount.after != 0 ? amount.by_transfer / std::abs(amount.after) : 0},
+                               {fmt::format("{}_error [kg]", name), error}});
+    }
 }
 
 }  // namespace
@@ -90,7 +108,8 @@ StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, 
                    {"mesh_cpu_seconds [s]", done.mesh_cpu_seconds},
                    {"transferred_fraction", done.transferred_fraction}};
     add_bodies(report, it, row);
-    if (it.heat) add_energy(report, row);
+    if (it.heat) add_energy(report, *it.heat, row);
+    add_species(report, it, row);
     return row;
 }
 

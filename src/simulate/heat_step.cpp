@@ -90,6 +90,7 @@ public:
             if (looks == most_lowerings) std::ranges::fill(marked_, 1);
             lower_marked();
         }
+        solved_ = after_;
         exchanged_.assign(pattern_.rows.column.size(), 0.0);
         if (!linear_) return;
         const HeatExtremes bounds = extremes(step_, vertices(), conditions_, after_);
@@ -100,7 +101,7 @@ public:
     [[nodiscard]] const Array<Vertex, double>& after() const { return after_; }
 
     [[nodiscard]] HeatReport report() const {
-        const Assembled assembled{pattern_, systems_, diffusion_, exchanged_, after_};
+        const Assembled assembled{pattern_, systems_, diffusion_, exchanged_, solved_};
         HeatReport report;
         report.iterations = iterations_;
         report.passes = passes_;
@@ -294,7 +295,7 @@ private:
         sum.held.assign(step_.options.regions.size(), 0.0);
         Array<Vertex, double> acting(after_.size(), 0.0);  // by conditions [J]
         for (const BoundaryShare& share : conditions_.shares) {
-            const double in = step_.dt * (share.flux - share.given(after_[share.vertex]));
+            const double in = step_.dt * (share.flux - share.given(solved_[share.vertex]));
             acting[share.vertex] += in;
             if (share.door.kind == Door::Kind::face) sum.faces[share.door.number] += in;
             else sum.surfaces[share.door.number - 1] += in;
@@ -327,6 +328,7 @@ private:
     const HeatConditions& conditions_;
     Pattern pattern_;
     Array<Vertex, double> after_;
+    Array<Vertex, double> solved_;  // before it was repaired: what the rows of the system speak of
     std::vector<char> marked_;    // rows of low order
     Array<Vertex, char> fresh_;   // that became so last; empty: none has
     CellSystems systems_;

@@ -13,7 +13,7 @@ struct Assembled {
     const CellSystems& systems;
     const std::vector<double>& diffusion;  // along each coupling of the pattern's rows, per unit of the difference
     const std::vector<double>& exchanged;  // along it: what the row got from the column, besides
-    const Array<Vertex, double>& after;
+    const Array<Vertex, double>& after;  // as it was solved for
 };
 
 /// What the cells at an owned row that are wanted gain at its vertex, and did not get from other vertices; and what
