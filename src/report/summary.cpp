@@ -1,6 +1,8 @@
 #include "report/summary.h"
 
+#include "report/results.h"
 #include "report/svg.h"
+#include "report/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +52,12 @@ void add_work(const Table& steps, Figures& rows) {
                       percent(median(touched)) + " (median), " + percent(largest(touched)) + " (most)");
 }
 
-/// Conserved fields: their integral, its drift over the run, the transfer's largest error.
+/// "rounding, 2e-15", or how much of it.
+std::string missed(double share, const std::string& of) {
+    return (is_rounding(share, 1) ? "rounding, " : "") + readable(share, 2) + of;
+}
+
+/// Conserved fields: their integral, its change over the run, the transfer's largest error.
 void add_balances(const Table& steps, Figures& rows) {
     constexpr std::string_view ending = "_integral";
     for (const Column& column : steps.columns) {
@@ -59,11 +66,10 @@ void add_balances(const Table& steps, Figures& rows) {
         const std::vector<double> values = numbers(steps, column.name);
         const double first = values.front(),
                      drift = (values.back() - first) / (first != 0 ? std::abs(first) : 1);
-        rows.emplace_back("Integral of " + field, readable(values.back(), 6) + " " + column.unit +
-                                                      ", drift " + readable(drift, 2) +
-                                                      (first != 0 ? " of the first" : ""));
+        rows.emplace_back("Stored " + field, with_unit(values.back(), column.unit, 6) + " at the last step; change since the "
+                                             "first: " + missed(drift, first != 0 ? " of it" : ""));
         if (const std::string error = field + "_transfer_error"; has_column(steps, error))
-            rows.emplace_back("Largest error of a transfer of " + field, readable(largest_size(numbers(steps, error)), 2));
+            rows.emplace_back("Largest error of a transfer of " + field, missed(largest_size(numbers(steps, error)), " of it"));
     }
 }
 
