@@ -61,10 +61,13 @@ std::vector<BodyResult> bodies_of(const Table& steps, const std::vector<double>&
 bool add_start(const Table& table, std::vector<BodyResult>& bodies) {
     if (table.rows != bodies.size() || !has_column(table, "x")) return false;
     const std::vector<Vec3> places = vectors(table, "x", "y", "z");
+    const auto name = std::ranges::find(table.columns, "name", &Column::name);
+    if (name == table.columns.end()) return false;
     const bool warm = has_column(table, "temperature_mean");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         BodyResult& body = bodies[i];
         body.start_place = places[i];
+        body.name = name->cells[i];
         if (!warm || body.mean.empty()) continue;
         body.start_mean = numbers(table, "temperature_mean")[i];
         body.least = std::min(*body.least, numbers(table, "temperature_min")[i]);

@@ -11,7 +11,7 @@ namespace kropla {
 
 /// What came out for a body. Vectors have a value per step; those of heat are empty where none is simulated.
 struct BodyResult {
-    std::string name;                           // as its columns have it
+    std::string name;                           // as the case has it; of older runs, as its columns have it
     std::vector<Vec3> place, velocity;          // [m] of the centroid, [m/s]
     std::vector<double> volume;                 // [m^3]
     std::vector<double> coldest, mean, hottest; // [K]
