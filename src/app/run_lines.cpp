@@ -55,7 +55,9 @@ std::string heat_of(const BodyResult& body, const RunResults& results) {
     std::string text = fmt::format("{} in the mean ({} at the {})", spoken_temperature(after, decimals),
                                    spoken_temperature(before, decimals), results.start_known ? "start" : "first step");
     if (results.energy && is_rounding(body.given_off, results.energy->size)) return text;
-    return text + fmt::format(", {} {}", body.given_off > 0 ? "gave off" : "took up", spoken(std::abs(body.given_off), "J"));
+    const bool conducts_only = !results.energy || is_rounding(results.energy->surfaces, results.energy->size);
+    return text + fmt::format(", {} {}{}", body.given_off > 0 ? "gave off" : "took up",
+                              spoken(std::abs(body.given_off), "J"), conducts_only ? "" : " by conduction");
 }
 
 std::string body_line(const BodyResult& body, const RunResults& results) {

@@ -118,14 +118,16 @@ std::string draw_head(const RunFiles& run, const RunSummary& s) {
     return "<h1>Run: " + escaped(run.name) + "</h1><p class=\"verdict " + kind + "\">" + escaped(v.text) + "</p>";
 }
 
-std::string draw_tiles(const RunSummary& s) {
+std::string draw_tiles(const RunFiles& run, const RunSummary& s) {
     const std::string floor = s.floor ? " (limit " + readable(*s.floor, 3) + ")" : "";
     return "<div class=\"tiles\">" + tile("steps", readable_count(s.steps)) +
            tile("worst aspect ratio R/r" + floor, s.steps > 0 ? readable(s.worst_aspect_ratio, 4) : "–") +
            tile(s.refused == 1 ? "refused attempt" : "refused attempts", readable_count(s.refused)) +
-           tile("mesh", readable_time(s.mesh_seconds)) +
-           tile("simulation", readable_time(s.simulate_seconds)) +
-           tile("transfer", readable_time(s.transfer_seconds)) + "</div>";
+           tile("computing time of the mesh", readable_time(s.mesh_seconds)) +
+           (has_column(run.steps, "energy_integral") ? tile("of the simulation", readable_time(s.simulate_seconds)) +
+                                                           tile("of the transfer", readable_time(s.transfer_seconds))
+                                                     : "") +
+           "</div>";
 }
 
 /// How far the mesh misses a size, for reading.
@@ -165,10 +167,11 @@ std::string draw_figures(const RunFiles& run, const RunSummary& summary) {
 
 /// What is known of a run once it has begun: what came out, then the mesh.
 std::string draw_steps(const RunFiles& run, const RunSummary& summary, const PageOptions& options) {
-    CutPictures cuts{"<p class=\"soft\">Its pictures are not drawn, as the run was interrupted: <code>kropla report</code> "
-                     "draws them.</p>", ""};
+    CutPictures cuts{"<p class=\"soft\">Its pictures are not drawn, as the run was interrupted: <code>kropla "
+                     "report</code> draws them.</p>",
+                     ""};
     if (options.cuts) cuts = draw_cuts(run, options.watch);
-    return draw_results(results_of(run), cuts.field) + "<section><h2>Mesh</h2>" + draw_tiles(summary) +
+    return draw_results(results_of(run), cuts.field) + "<section><h2>Mesh</h2>" + draw_tiles(run, summary) +
            draw_charts(run, summary) + '\n' + cuts.mesh + '\n' + draw_sizes(run) + draw_figures(run, summary) +
            "</section>\n<section><h2>The case</h2><pre>" + escaped(run.case_text) + "</pre></section>\n";
 }

@@ -61,7 +61,8 @@ std::string draw_bodies(const RunResults& results) {
     if (results.bodies.empty()) return {};
     const bool warm = !results.bodies.front().mean.empty();
     std::vector<std::string> head = {"body"};
-    if (warm) head.insert(head.end(), {"mean temperature, start → end [K]", "least … most [K]", "heat given off", "at most"});
+    if (warm)
+        head.insert(head.end(), {"mean temperature, start → end [K]", "least … most [K]", "heat given off", "at most"});
     head.insert(head.end(), {"centre, at the start", "at the end", "speed at the end", "volume"});
     std::string html = "<h3>Bodies</h3><div class=\"wide\"><table>" + table_row("th", head);
     for (const BodyResult& body : results.bodies) {
@@ -72,20 +73,26 @@ std::string draw_bodies(const RunResults& results) {
         else if (warm) cells.insert(cells.end(), {nothing, nothing});
         const double size = length_scale(body);
         cells.insert(cells.end(), {place_with_unit(body.start_place, size), place_with_unit(body.place.back(), size),
-                                   moves(body) ? with_unit(norm(body.velocity.back()), "m/s", 3) : "at rest", volume(body)});
+                                   moves(body) ? with_unit(norm(body.velocity.back()), "m/s", 3) : "at rest",
+                                   volume(body)});
         html += table_row("td", cells);
     }
-    const char* taken = warm ? "<p class=\"soft\">Negative heat: taken up by the body.</p>" : "";
-    const char* first = results.start_known ? "" : "<p class=\"soft\">For the start stands the end of the first step.</p>";
+    const char* taken = warm ? "<p class=\"soft\">Heat given off: what is conducted through the surface into the "
+                               "surroundings; negative: into the body. What the surface itself sets free or radiates is not "
+                               "in it.</p>"
+                             : "";
+    const char* first =
+        results.start_known ? "" : "<p class=\"soft\">For the start stands the end of the first step.</p>";
     return html + "</table></div>" + taken + first;
 }
 
 std::string draw_faces(const RunResults& results) {
     if (results.faces.empty()) return {};
     std::string rows;
-    for (const FaceResult& face : results.faces)
-        if (passes(results, face.out))
-            rows += table_row("td", {spoken_face(face.name), with_unit(face.out.back(), "W"), with_unit(face.total, "J")});
+    for (const FaceResult& face : results.faces) {
+        if (!passes(results, face.out)) continue;
+        rows += table_row("td", {spoken_face(face.name), with_unit(face.out.back(), "W"), with_unit(face.total, "J")});
+    }
     if (rows.empty()) return "<h3>Faces of the box</h3><p class=\"soft\">No heat passes them.</p>";
     return "<h3>Faces of the box</h3><table>" +
            table_row("th", {"face", "heat that leaves, at the end", "in all (negative: comes in)"}) + rows + "</table>";
@@ -100,12 +107,14 @@ std::string draw_energy(const RunResults& results) {
         return row(name, is_rounding(joules, energy.size) ? nothing : with_unit(joules, "J"));
     };
     const std::string share = readable(std::abs(energy.relative_error()), 1) + " of the energy";
-    const std::string error = is_rounding(energy.error(), energy.size) ? "none but rounding, " + share
-                                                                       : with_unit(energy.error(), "J", 2) + ", " + share;
-    return "<h3>Energy of the whole box</h3><table>" + row("stored at the start", with_unit(energy.start, "J", digits)) +
-           brought("in through faces", energy.faces) + brought("by sources", energy.sources) +
-           brought("at surfaces of bodies", energy.surfaces) + brought("to hold regions at their temperature", energy.held) +
-           row("stored at the end", with_unit(energy.end, "J", digits)) + row("error of the balance", error) + "</table>";
+    const std::string error =
+        is_rounding(energy.error(), energy.size) ? "none but rounding" : with_unit(energy.error(), "J", 2);
+    return "<h3>Energy of the whole box</h3><table>" +
+           row("stored at the start", with_unit(energy.start, "J", digits)) + brought("in through faces", energy.faces) +
+           brought("by sources", energy.sources) + brought("at surfaces of bodies", energy.surfaces) +
+           brought("to hold regions at their temperature", energy.held) +
+           row("stored at the end", with_unit(energy.end, "J", digits)) +
+           row("error of the balance", error + ", " + share) + "</table>";
 }
 
 /// A chart over the run's time, in the unit that suits its values.
@@ -151,7 +160,8 @@ std::string draw_temperatures(const RunResults& results) {
                          {{"least", body->coldest}, {"mean", body->mean}, {"most", body->hottest}});
     if (warm.size() <= own_charts) return html;
     html += draw(results, "Mean temperature", "K", of_bodies(warm, [](const BodyResult& body) { return body.mean; }));
-    html += draw(results, "Least temperature", "K", of_bodies(warm, [](const BodyResult& body) { return body.coldest; }));
+    html += draw(results, "Least temperature", "K",
+                 of_bodies(warm, [](const BodyResult& body) { return body.coldest; }));
     return html + draw(results, "Largest temperature", "K",
                        of_bodies(warm, [](const BodyResult& body) { return body.hottest; }));
 }

@@ -26,12 +26,13 @@ ScaledUnit unit_for(double size, const std::string& si) {
     const bool cubic = si == "m^3";
     if (!cubic && std::ranges::find(scaled, si) == scaled.end()) return {1, with_power(si)};
     const bool known = size > 0 && std::isfinite(size);
+    const double least = si == "m/s" ? 0.1 : 0.9995;  // 0.89 m/s is as good as any
     const bool only_small = si.starts_with("m") || si == "s";  // no Mm, no ks
     for (const auto& [factor, name] : prefixes) {
         const double unit = cubic ? factor * factor * factor : factor;
         if (only_small && unit > 1) continue;
         const bool last = factor == prefixes.back().first;
-        if ((known && (size >= 0.9995 * unit || last)) || (!known && factor == 1)) return {1 / unit, name + with_power(si)};
+        if ((known && (size >= least * unit || last)) || (!known && factor == 1)) return {1 / unit, name + with_power(si)};
     }
     return {1, with_power(si)};
 }

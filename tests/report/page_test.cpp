@@ -50,6 +50,8 @@ TEST(Page, ShowsAFinishedRun) {
     expect_sound(html);
     EXPECT_NE(html.find("Finished at 500 ms"), std::string::npos);
     EXPECT_NE(html.find("Temperature [K], cut"), std::string::npos);
+    EXPECT_LT(html.find("<h2>Results</h2>"), html.find("<h2>Mesh</h2>"));  // also where steps.csv tells nothing of them
+    EXPECT_LT(html.find("verdict good"), html.find("<h2>Results</h2>"));
     const std::regex cells("class=\"picture cells\"");
     EXPECT_EQ(std::distance(std::sregex_iterator(html.begin(), html.end(), cells), {}), 6);
 }

@@ -9,7 +9,8 @@ TEST(Units, SuitTheSize) {
     EXPECT_EQ(with_unit(0.0123456, "W"), "12.35 mW");
     EXPECT_EQ(with_unit(-63200, "J", 3), "-63.2 kJ");
     EXPECT_EQ(with_unit(2e-4, "m"), "200 µm");
-    EXPECT_EQ(with_unit(0.8, "m/s"), "800 mm/s");
+    EXPECT_EQ(with_unit(0.8, "m/s"), "0.8 m/s");
+    EXPECT_EQ(with_unit(0.08, "m/s"), "80 mm/s");
     EXPECT_EQ(with_unit(4.18879e-9, "m^3"), "4.189 mm³");
     EXPECT_EQ(with_unit(20, "m^3"), "20 m³");
     EXPECT_EQ(with_unit(12000, "m"), "12000 m");
