@@ -62,9 +62,9 @@ void write_bodies(const std::filesystem::path& path, const std::vector<BodySize>
     for (std::size_t body = 0; body < sizes.size(); ++body) {
         const BodySize& s = sizes[body];
         const BodyState& start = at_start[body];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", body + 1, csv_cell(one_line(s.name)), s.semi_axes.x,
-                            s.semi_axes.y, s.semi_axes.z, s.volume, s.mesh_volume, s.triangles, s.mean_edge, start.place.x,
-                            start.place.y, start.place.z);
+        text += fmt::format("{},{},{},{},{},{},{},{},{},", body + 1, csv_cell(one_line(s.name)), s.semi_axes.x,
+                            s.semi_axes.y, s.semi_axes.z, s.volume, s.mesh_volume, s.triangles, s.mean_edge);
+        text += fmt::format("{},{},{}", start.place.x, start.place.y, start.place.z);
         if (warm) text += fmt::format(",{},{},{}", start.coldest, start.mean, start.hottest);
         text += '\n';
     }

@@ -73,12 +73,13 @@ std::string brought(double joules, const char* how, const EnergyBalance& energy)
 }
 
 std::string energy_line(const EnergyBalance& energy) {
-    const std::string flows = brought(energy.faces, "through faces", energy) + brought(energy.sources, "by sources", energy) +
-                              brought(energy.surfaces, "at surfaces of bodies", energy) +
-                              brought(energy.held, "by what is held", energy);
+    const std::string flows =
+        brought(energy.faces, "through faces", energy) + brought(energy.sources, "by sources", energy) +
+        brought(energy.surfaces, "at surfaces of bodies", energy) + brought(energy.held, "by what is held", energy);
     const double error = std::abs(energy.relative_error());
-    return fmt::format("energy: {} stored{}, {} {}", spoken(energy.end, "J"), flows, flows.empty() ? "kept" : "balanced",
-                       error > 0 ? fmt::format("to {:.0e}", error) : "to the last digit");
+    const std::string to = error > 0 ? fmt::format("to {:.0e}", error) : "to the last digit";
+    return fmt::format("energy: {} stored{}, {} {}", spoken(energy.end, "J"), flows,
+                       flows.empty() ? "kept" : "balanced", to);
 }
 
 /// To two digits, as it is an estimate.
@@ -102,16 +103,16 @@ std::vector<std::string> closing_lines(const std::filesystem::path& folder, doub
     const RunFiles run = read_run_files(folder);
     const RunSummary summary = summarise_run(run);
     const RunResults results = results_of(run);
-    std::vector<std::string> lines = {fmt::format("done: {} to {} in {}, worst R/r {:.1f}", counted(summary.steps, "step"),
-                                                  spoken_time(summary.reached), clock_time(seconds),
-                                                  summary.worst_aspect_ratio)};
+    std::vector<std::string> lines;
+    lines.push_back(fmt::format("done: {} to {} in {}, worst R/r {:.1f}", counted(summary.steps, "step"),
+                                spoken_time(summary.reached), clock_time(seconds), summary.worst_aspect_ratio));
     const std::size_t count = results.bodies.size();
     for (std::size_t body = 0; body < std::min(most_bodies, count); ++body)
         lines.push_back(body_line(results.bodies[body], results));
-    if (count > most_bodies)
-        lines.push_back(fmt::format("and {} more", counted_bodies(count - most_bodies)));
+    if (count > most_bodies) lines.push_back(fmt::format("and {} more", counted_bodies(count - most_bodies)));
     if (results.energy) lines.push_back(energy_line(*results.energy));
-    lines.push_back(fmt::format("see {}, or paraview {}", (folder / "report.html").string(), (folder / "frames.pvd").string()));
+    lines.push_back(fmt::format("see {}, or paraview {}", (folder / "report.html").string(),
+                                (folder / "frames.pvd").string()));
     return lines;
 }
 

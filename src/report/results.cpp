@@ -10,8 +10,6 @@ namespace {
 
 constexpr std::array<const char*, 6> face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
-
 double largest_size(const std::vector<double>& values) {
     double most = 0;
     for (const double value : values) most = std::max(most, std::abs(value));

@@ -11,14 +11,15 @@ namespace kropla {
 
 /// What came out for a body. Vectors have a value per step; those of heat are empty where none is simulated.
 struct BodyResult {
-    std::string name;                           // as the case has it; of older runs, as its columns have it
-    std::vector<Vec3> place, velocity;          // [m] of the centroid, [m/s]
-    std::vector<double> volume;                 // [m^3]
-    std::vector<double> coldest, mean, hottest; // [K]
-    std::vector<double> heat_from;              // [W] leaves it through its surface
-    double given_off = 0;                       // [J] of that, over the run
-    Vec3 start_place;                           // [m]; of a run that has not written its start, of the first step
-    std::optional<double> start_mean, least, most;  // [K] mean at the start (likewise); extremes of the run
+    std::string name;                   // as the case has it; of older runs, as columns have it
+    std::vector<Vec3> place, velocity;  // [m] of the centroid, [m/s]
+    std::vector<double> volume;         // [m^3]
+    std::vector<double> coldest = {}, mean = {}, hottest = {};  // [K]
+    std::vector<double> heat_from = {};           // [W] conducted out through its surface
+    double given_off = 0;                         // [J] of that, over the run
+    Vec3 start_place = {};                        // [m]; where bodies.csv does not tell, of the first step
+    std::optional<double> start_mean = {};        // [K] likewise
+    std::optional<double> least = {}, most = {};  // [K] of the run
 };
 /// The largest of its coordinates on its way, or its size if that is larger [m].
 [[nodiscard]] double length_scale(const BodyResult& body);
@@ -44,8 +45,8 @@ struct EnergyBalance {
     [[nodiscard]] double relative_error() const { return size > 0 ? error() / size : 0; }
 };
 
-/// Below this share of what it is compared with, a figure of a run is rounding: single errors are some 1e-16, and add up
-/// over vertices and steps.
+/// Below this share of what it is compared with, a figure of a run is rounding: single errors are some 1e-16, and add
+/// up over vertices and steps.
 inline constexpr double rounding_share = 1e-11;
 /// Is it nothing but rounding, compared with `size`?
 [[nodiscard]] bool is_rounding(double value, double size);

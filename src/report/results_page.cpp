@@ -62,7 +62,8 @@ std::string draw_bodies(const RunResults& results) {
     const bool warm = !results.bodies.front().mean.empty();
     std::vector<std::string> head = {"body"};
     if (warm)
-        head.insert(head.end(), {"mean temperature, start → end [K]", "least … most [K]", "heat given off", "at most"});
+        head.insert(head.end(), {"mean temperature, start → end [K]", "least … most [K]", "heat given off",
+                                 "at most"});
     head.insert(head.end(), {"centre, at the start", "at the end", "speed at the end", "volume"});
     std::string html = "<h3>Bodies</h3><div class=\"wide\"><table>" + table_row("th", head);
     for (const BodyResult& body : results.bodies) {
@@ -78,8 +79,8 @@ std::string draw_bodies(const RunResults& results) {
         html += table_row("td", cells);
     }
     const char* taken = warm ? "<p class=\"soft\">Heat given off: what is conducted through the surface into the "
-                               "surroundings; negative: into the body. What the surface itself sets free or radiates is not "
-                               "in it.</p>"
+                               "surroundings; negative: into the body. What the surface itself sets free or radiates "
+                               "is not in it.</p>"
                              : "";
     const char* first =
         results.start_known ? "" : "<p class=\"soft\">For the start stands the end of the first step.</p>";
@@ -110,8 +111,8 @@ std::string draw_energy(const RunResults& results) {
     const std::string error =
         is_rounding(energy.error(), energy.size) ? "none but rounding" : with_unit(energy.error(), "J", 2);
     return "<h3>Energy of the whole box</h3><table>" +
-           row("stored at the start", with_unit(energy.start, "J", digits)) + brought("in through faces", energy.faces) +
-           brought("by sources", energy.sources) + brought("at surfaces of bodies", energy.surfaces) +
+           row("stored at the start", with_unit(energy.start, "J", digits)) +
+           brought("in through faces", energy.faces) + brought("by sources", energy.sources) + brought("at surfaces of bodies", energy.surfaces) +
            brought("to hold regions at their temperature", energy.held) +
            row("stored at the end", with_unit(energy.end, "J", digits)) +
            row("error of the balance", error + ", " + share) + "</table>";
@@ -169,7 +170,8 @@ std::string draw_temperatures(const RunResults& results) {
 std::string draw_heat(const RunResults& results) {
     const auto giving = bodies_that(results, [&](const BodyResult& body) { return passes(results, body.heat_from); });
     const std::string from = giving.size() == 1 ? "Heat from " + giving.front()->name : "Heat from bodies";
-    std::string html = draw(results, from, "W", of_bodies(giving, [](const BodyResult& body) { return body.heat_from; }));
+    const auto heat_from = [](const BodyResult& body) { return body.heat_from; };
+    std::string html = draw(results, from, "W", of_bodies(giving, heat_from));
     std::vector<Series> faces;
     for (const FaceResult& face : results.faces)
         if (passes(results, face.out)) faces.push_back({spoken_face(face.name), face.out});

@@ -66,10 +66,12 @@ void add_balances(const Table& steps, Figures& rows) {
         const std::vector<double> values = numbers(steps, column.name);
         const double first = values.front(),
                      drift = (values.back() - first) / (first != 0 ? std::abs(first) : 1);
-        rows.emplace_back("Stored " + field, with_unit(values.back(), column.unit, 6) + " at the last step; change since the "
-                                             "first: " + missed(drift, first != 0 ? " of it" : ""));
+        rows.emplace_back("Stored " + field, with_unit(values.back(), column.unit, 6) +
+                                                 " at the last step; change since the first: " +
+                                                 missed(drift, first != 0 ? " of it" : ""));
         if (const std::string error = field + "_transfer_error"; has_column(steps, error))
-            rows.emplace_back("Largest error of a transfer of " + field, missed(largest_size(numbers(steps, error)), " of it"));
+            rows.emplace_back("Largest error of a transfer of " + field,
+                              missed(largest_size(numbers(steps, error)), " of it"));
     }
 }
 

@@ -16,25 +16,28 @@ constexpr std::array<Prefix, 8> prefixes = {
     {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}, {1e-12, "p"}}};
 constexpr std::array<const char*, 5> scaled = {"m", "m/s", "J", "W", "s"};
 
-std::string with_power(const std::string& si) {
-    return si.ends_with("^3") ? si.substr(0, si.size() - 2) + "³" : si.ends_with("^2") ? si.substr(0, si.size() - 2) + "²" : si;
+/// "m^3" as it is printed.
+std::string printed(std::string si) {
+    if (si.ends_with("^3")) si.replace(si.size() - 2, 2, "³");
+    if (si.ends_with("^2")) si.replace(si.size() - 2, 2, "²");
+    return si;
 }
 
 }  // namespace
 
 ScaledUnit unit_for(double size, const std::string& si) {
     const bool cubic = si == "m^3";
-    if (!cubic && std::ranges::find(scaled, si) == scaled.end()) return {1, with_power(si)};
-    const bool known = size > 0 && std::isfinite(size);
+    const bool scales = cubic || std::ranges::find(scaled, si) != scaled.end();
+    if (!scales || !(size > 0) || !std::isfinite(size)) return {1, printed(si)};
     const double least = si == "m/s" ? 0.1 : 0.9995;  // 0.89 m/s is as good as any
     const bool only_small = si.starts_with("m") || si == "s";  // no Mm, no ks
-    for (const auto& [factor, name] : prefixes) {
-        const double unit = cubic ? factor * factor * factor : factor;
-        if (only_small && unit > 1) continue;
-        const bool last = factor == prefixes.back().first;
-        if ((known && (size >= least * unit || last)) || (!known && factor == 1)) return {1 / unit, name + with_power(si)};
-    }
-    return {1, with_power(si)};
+    const auto unit_of = [&](const Prefix& prefix) { return cubic ? std::pow(prefix.first, 3) : prefix.first; };
+    const auto fits = [&](const Prefix& prefix) {
+        return !(only_small && prefix.first > 1) && size >= least * unit_of(prefix);
+    };
+    const auto found = std::ranges::find_if(prefixes, fits);
+    const Prefix& prefix = found == prefixes.end() ? prefixes.back() : *found;
+    return {1 / unit_of(prefix), prefix.second + printed(si)};
 }
 
 std::string with_unit(double value, const std::string& si, int digits) {
@@ -46,8 +49,8 @@ std::string fixed(double value, int decimals) {
     const double ten = std::pow(10.0, decimals);
     const double rounded = std::abs(value) * ten < 0.5 ? 0.0 : value;
     std::array<char, 400> text;  // as long as the largest number
-    const auto result = std::to_chars(text.data(), text.data() + text.size(), rounded, std::chars_format::fixed, decimals);
-    return {text.data(), result.ptr};
+    char* const end = text.data() + text.size();
+    return {text.data(), std::to_chars(text.data(), end, rounded, std::chars_format::fixed, decimals).ptr};
 }
 
 int decimals_to_tell(double a, double b) {

@@ -28,21 +28,22 @@ TEST(ClosingLines, SayOfManyBodiesTheFirstTwo) {
               ",0.001,2,0,0,0,0,1,0,0,5e-6,0,0,0,1e-18,0,0,0,0,0,0,1e-18");
     const std::string where = folder.path.string();
     EXPECT_EQ(closing_lines(folder.path, 75),
-              (std::vector<std::string>{"done: 1 step to 250 ms in 1:15, worst R/r 5.0", "a: at rest at (0.00, 2.00, 0.00) m",
-                                        "b: at rest at (0.00, 0.00, 5.00) um", "and 1 body more",
+              (std::vector<std::string>{"done: 1 step to 250 ms in 1:15, worst R/r 5.0",
+                                        "a: at rest at (0.00, 2.00, 0.00) m", "b: at rest at (0.00, 0.00, 5.00) um",
+                                        "and 1 body more",
                                         "see " + where + "/report.html, or paraview " + where + "/frames.pvd"}));
 }
 
 TEST(ClosingLines, TellWhereTheEnergyCameFrom) {
     const TemporaryFolder folder;
     write_run(folder,
-              ",energy_integral [J],energy_before_transfer [J],heat_out_x_min [W],heat_out_x_max [W],heat_out_y_min [W],"
-              "heat_out_y_max [W],heat_out_z_min [W],heat_out_z_max [W],heat_sources [W],heat_at_surfaces [W],heat_held [W],"
-              "energy_error [J]",
+              ",energy_integral [J],energy_before_transfer [J],heat_out_x_min [W],heat_out_x_max [W],"
+              "heat_out_y_min [W],heat_out_y_max [W],heat_out_z_min [W],heat_out_z_max [W],heat_sources [W],"
+              "heat_at_surfaces [W],heat_held [W],energy_error [J]",
               ",63.25,63.25,-8,0,0,0,0,0,2,-1,0,0");
     EXPECT_EQ(closing_lines(folder.path, 1)[1],
-              "energy: 63.2 J stored, 2 J in through faces, 500 mJ in by sources, 250 mJ out at surfaces of bodies, balanced "
-              "to the last digit");
+              "energy: 63.2 J stored, 2 J in through faces, 500 mJ in by sources, 250 mJ out at surfaces of bodies, "
+              "balanced to the last digit");
 }
 
 }  // namespace

@@ -7,13 +7,14 @@
 namespace kropla {
 namespace {
 
-/// Two steps of a body that falls by 1 m each and cools, in a box that loses 0.5 W through z min and has a source of 3 W.
+/// Two steps of a body that falls by 1 m each and cools, in a box that loses 0.5 W through z min and has a source
+/// of 3 W.
 constexpr const char* steps_text =
     "step,time [s],dt [s],x_a [m],y_a [m],z_a [m],u_a [m/s],v_a [m/s],w_a [m/s],volume_a [m^3],area_a [m^2],"
     "temperature_min_a [K],temperature_mean_a [K],temperature_max_a [K],heat_from_a [W],"
     "energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited [K],energy_beyond_bounds [K],"
-    "heat_out_x_min [W],heat_out_x_max [W],heat_out_y_min [W],heat_out_y_max [W],heat_out_z_min [W],heat_out_z_max [W],"
-    "heat_sources [W],heat_at_surfaces [W],heat_held [W],energy_error [J]\n"
+    "heat_out_x_min [W],heat_out_x_max [W],heat_out_y_min [W],heat_out_y_max [W],heat_out_z_min [W],"
+    "heat_out_z_max [W],heat_sources [W],heat_at_surfaces [W],heat_held [W],energy_error [J]\n"
     "1,2,2,0,0,4,0,0,-0.5,8,24,380,390,395,7,105,0,105,0,0,0,0,0,0,0.5,0,3,0,0,0\n"
     "2,3,1,1e-16,0,3,1e-16,0,-1,8,24,360,370,394,-9,107.5,0,107.5,0,0,0,0,0,0,0.5,0,3,0,0,0\n";
 constexpr const char* bodies_text =
@@ -87,7 +88,8 @@ TEST(ResultsPage, ShowsWhatThereIsAndNothingElse) {
 TEST(ResultsPage, CallsAnErrorWhatIsOne) {
     std::string leaking = steps_text;
     leaking.replace(leaking.find("107.5"), 5, "106.5");
-    EXPECT_TRUE(has(draw_results(results_of(files(leaking)), ""), "<td>error of the balance</td><td>-1 J, 0.009 of the energy</td>"));
+    const std::string html = draw_results(results_of(files(leaking)), "");
+    EXPECT_TRUE(has(html, "<td>error of the balance</td><td>-1 J, 0.009 of the energy</td>")) << html;
 }
 
 TEST(ResultsPage, StaysLegibleWithManyBodies) {
