@@ -225,7 +225,7 @@ std::string draw_stored(const RunResults& results) {
     std::vector<double> change;
     for (const double joules : results.energy->stored) change.push_back(joules - results.energy->start);
     if (is_rounding(most_by_size(change), results.energy->size)) return {};
-    return draw(results, "Energy of the box, change since the start", "J", {{"change", change}});
+    return draw(results, "Energy stored since the start", "J", {{"stored", change}});
 }
 
 }  // namespace

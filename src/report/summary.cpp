@@ -54,7 +54,7 @@ void add_work(const Table& steps, Figures& rows) {
 
 /// "rounding, 2e-15", or how much of it.
 std::string missed(double share, const std::string& of) {
-    return (is_rounding(share, 1) ? "rounding, " : "") + readable(share, 2) + of;
+    return (is_rounding(share, 1) ? "rounding, " + readable(std::abs(share), 2) : readable(share, 2)) + of;
 }
 
 /// Conserved fields: their integral, its change over the run, the transfer's largest error.
@@ -121,8 +121,9 @@ Figures figures(const RunFiles& run, const RunSummary& s) {
     rows.emplace_back("Steps", readable_count(s.steps) + ", to t = " + readable_time(s.reached));
     rows.emplace_back("Frames", readable_count(static_cast<double>(run.frames.size())));
     if (s.steps == 0) return rows;
-    rows.emplace_back("Time step", readable_time(least(numbers(steps, "dt"))) + " to " +
-                                       readable_time(largest(numbers(steps, "dt"))));
+    const std::string shortest = readable_time(least(numbers(steps, "dt"))),
+                      longest = readable_time(largest(numbers(steps, "dt")));
+    rows.emplace_back("Time step", shortest == longest ? longest : shortest + " to " + longest);
     rows.emplace_back("Attempts refused", readable_count(s.refused));
     rows.emplace_back("Vertices", from_to(numbers(steps, "vertices")));
     rows.emplace_back("Tets", from_to(numbers(steps, "tets")));

@@ -79,7 +79,7 @@ TEST(ResultsPage, ShowsWhatThereIsAndNothingElse) {
                              "<td>by sources</td><td>9 J</td>",
                              "<td>error of the balance</td><td>none but rounding, 0 of the energy</td>",
                              "Temperature of a [K]", "Heat from a [W]", "Heat out through z min [mW]",
-                             "Energy of the box, change since the start [J]", "Displacement of a along z [m]",
+                             "Energy stored since the start [J]", "Displacement of a along z [m]",
                              "Speed of a [m/s]", "time [s]", "<p>pictures</p>"})
         EXPECT_TRUE(has(html, part)) << part << "\n" << html;
     EXPECT_FALSE(has(html, "<td>x min</td>"));
