@@ -2,9 +2,13 @@
 
 #include "io/file.h"
 #include <kropla/mesh/quality.h>
+#include "report/table.h"
 #include "simulate/cells.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
 
 namespace kropla {
 namespace {
@@ -15,6 +19,12 @@ double mean_edge(const Mesh& mesh, const std::vector<std::array<Vertex, 3>>& tri
         sum += distance(mesh.position[a], mesh.position[b]) + distance(mesh.position[b], mesh.position[c]) +
                distance(mesh.position[c], mesh.position[a]);
     return triangles.empty() ? 0 : sum / (3.0 * static_cast<double>(triangles.size()));
+}
+
+/// A name that has several lines on one.
+std::string one_line(std::string name) {
+    std::ranges::replace_if(name, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    return name;
 }
 
 }  // namespace
@@ -44,13 +54,20 @@ std::string describe(const std::vector<BodySize>& sizes) {
     return text;
 }
 
-void write_body_sizes(const std::filesystem::path& path, const std::vector<BodySize>& sizes) {
-    std::string text =
-        "body,semi_axis_1 [m],semi_axis_2 [m],semi_axis_3 [m],volume [m^3],mesh_volume [m^3],triangles,mean_edge [m]\n";
-    int body = 0;
-    for (const BodySize& s : sizes)
-        text += fmt::format("{},{},{},{},{},{},{},{}\n", ++body, s.semi_axes.x, s.semi_axes.y, s.semi_axes.z, s.volume,
-                            s.mesh_volume, s.triangles, s.mean_edge);
+void write_bodies(const std::filesystem::path& path, const std::vector<BodySize>& sizes,
+                  const std::vector<BodyState>& at_start, bool warm) {
+    std::string text = "body,name,semi_axis_1 [m],semi_axis_2 [m],semi_axis_3 [m],volume [m^3],mesh_volume [m^3],"
+                       "triangles,mean_edge [m],x [m],y [m],z [m]";
+    text += warm ? ",temperature_min [K],temperature_mean [K],temperature_max [K]\n" : "\n";
+    for (std::size_t body = 0; body < sizes.size(); ++body) {
+        const BodySize& s = sizes[body];
+        const BodyState& start = at_start[body];
+        text += fmt::format("{},{},{},{},{},{},{},{},{},", body + 1, csv_cell(one_line(s.name)), s.semi_axes.x,
+                            s.semi_axes.y, s.semi_axes.z, s.volume, s.mesh_volume, s.triangles, s.mean_edge);
+        text += fmt::format("{},{},{}", start.place.x, start.place.y, start.place.z);
+        if (warm) text += fmt::format(",{},{},{}", start.coldest, start.mean, start.hottest);
+        text += '\n';
+    }
     write_file(path, text);
 }
 

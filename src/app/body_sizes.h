@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/body_state.h"
 #include <kropla/domain/domain.h>
 #include <kropla/mesh/mesh.h>
 
@@ -24,7 +25,9 @@ struct BodySize {
 /// A line for each body; of many, for the first few, and a line that says how many there are more.
 [[nodiscard]] std::string describe(const std::vector<BodySize>& sizes);
 
-/// Writes them as comma-separated values, a row per body. Throws FileError.
-void write_body_sizes(const std::filesystem::path& path, const std::vector<BodySize>& sizes);
+/// Writes bodies.csv, a row per body: its sizes, where it is when the run starts, and if `warm`, its temperatures then.
+/// Throws FileError.
+void write_bodies(const std::filesystem::path& path, const std::vector<BodySize>& sizes,
+                  const std::vector<BodyState>& at_start, bool warm);
 
 }  // namespace kropla

@@ -127,7 +127,6 @@ public:
         }
     }
 
-    [[nodiscard]] const Place& place() const { return place_; }
     /// Writes the checkpoint, if there is none of this step yet.
     void save() {
         if (!is_saved_) output_.write_checkpoint(checkpoint_of(place_, it_));
@@ -292,7 +291,8 @@ int run_with(const RunOptions& options, const Ranks& ranks) {
     const PageOptions page = code == 0 ? PageOptions{.watch = ranks.watch} : PageOptions{.cuts = false};
     if (ranks.rank == 0) write_run_report(options.out, page);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
-    if (code == 0) progress.say(closing_line(options, loop.place().step, loop.place().state.moving.time(), taken.count()));
+    if (code != 0 || ranks.rank != 0) return code;
+    for (const std::string& line : closing_lines(options.out, taken.count())) progress.say(line);
     return code;
 }
 

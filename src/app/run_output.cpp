@@ -55,16 +55,19 @@ RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std:
     if (!speak_) return;
     forget_end(folder_);
     if (options.resume) go_on(step, state);
-    else start(state.moving.reference());
+    else start(state);
 }
 
-void RunOutput::start(const Mesh& mesh) {
+void RunOutput::start(const State& state) {
+    const Mesh& mesh = state.moving.reference();
+    const auto* temperature = it_.heat ? &state.fields.front().values : nullptr;
     if (overwrite_) clear_run_folder(folder_);
     std::error_code trouble;
     std::filesystem::create_directories(folder_ / "frames", trouble);
     if (trouble) throw FileError(fmt::format("{}: cannot be made: {}", folder_.string(), trouble.message()));
     write_file(folder_ / "case.toml", to_toml(it_));
-    write_body_sizes(folder_ / "bodies.csv", body_sizes(it_.domain, mesh));
+    write_bodies(folder_ / "bodies.csv", body_sizes(it_.domain, mesh), body_states(it_.domain, mesh, temperature),
+                 it_.heat.has_value());
     table_.emplace(folder_ / "steps.csv", columns(it_, mesh));
     write_pvd(folder_ / "frames.pvd", series_);
 }

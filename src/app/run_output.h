@@ -34,7 +34,7 @@ public:
     void say(const std::string& line) { progress_.say(line); }
 
 private:
-    void start(const Mesh& mesh);
+    void start(const State& state);
     void go_on(std::int64_t step, const State& state);
 
     bool overwrite_;

@@ -14,14 +14,6 @@
 namespace kropla {
 namespace {
 
-/// As RFC 4180 has it.
-std::string cell(const std::string& text) {
-    if (text.find_first_of(",\"") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + '"';
-}
-
 std::string header_of(const Column& column) {
     return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
 }
@@ -62,13 +54,13 @@ void write_sweep_table(const std::filesystem::path& dir, const std::vector<std::
             if (std::ranges::find(columns, header_of(column)) == columns.end()) columns.push_back(header_of(column));
     }
     std::string text = "run";
-    for (const std::string& key : keys) text += ',' + cell(key);
+    for (const std::string& key : keys) text += ',' + csv_cell(key);
     text += ",exit_code,wall_seconds [s]";
-    for (const std::string& column : columns) text += ',' + cell(column);
+    for (const std::string& column : columns) text += ',' + csv_cell(column);
     text += '\n';
     for (std::size_t r = 0; r < rows.size(); ++r) {
-        text += cell(rows[r].run.name);
-        for (const std::string& value : rows[r].run.values) text += ',' + cell(value);
+        text += csv_cell(rows[r].run.name);
+        for (const std::string& value : rows[r].run.values) text += ',' + csv_cell(value);
         text += fmt::format(",{},{:.3f}", rows[r].code, rows[r].seconds);
         for (const std::string& column : columns) text += ',' + last_of(steps[r], column);
         text += '\n';

@@ -2,6 +2,7 @@
 
 #include "io/xml.h"
 #include "report/svg.h"
+#include "report/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,9 @@ namespace kropla {
 namespace {
 
 // The drawing [pixels]: as wide as a column of the page; room for numbers at the left and below.
-constexpr double width = 420, height = 200, left = 52, right = 410, top = 8, bottom = 166;
+constexpr double width = 420, height = 200, left = 60, right = 410, top = 8, bottom = 166;
 constexpr std::size_t most_rows = 400;  // more would be narrower than a pixel
+constexpr double flat_share = 1e-6;     // of the value: a change that numbers at the axis do not show
 
 /// Where values are on the drawing.
 struct Axes {
@@ -74,7 +76,7 @@ Range range_of_values(const Chart& chart) {
 Axes axes_of(const Chart& chart) {
     Range y = range_of_values(chart);
     if (!(y.least <= y.most)) y = {0, 1};  // no value is finite
-    const bool flat = y.most - y.least <= 1e-12 * std::max(std::abs(y.most), std::abs(y.least));
+    const bool flat = y.most - y.least <= flat_share * std::max(std::abs(y.most), std::abs(y.least));
     const double flat_margin = y.most == 0 ? 1 : 0.05 * std::abs(y.most);
     const double margin = flat ? flat_margin : 0.06 * (y.most - y.least);
     const double foot = chart.marks == Chart::Marks::columns && y.least == 0 ? 0 : margin;
@@ -95,11 +97,20 @@ std::string level_line(double y, const char* kind) {
            pixels(right) + "\"/>";
 }
 
+/// As many as tell the numbers apart.
+int digits_for(const std::vector<double>& ticks) {
+    constexpr int least = 5, most = 8;
+    if (ticks.size() < 2) return least;
+    const double largest = std::max(std::abs(ticks.front()), std::abs(ticks.back()));
+    return std::clamp(1 + static_cast<int>(std::ceil(std::log10(largest / (ticks[1] - ticks[0])))), least, most);
+}
+
 std::string draw_axes(const Chart& chart, const Axes& axes) {
     std::string svg;
-    for (const double value : round_ticks(axes.y_least, axes.y_most, 5)) {
+    const std::vector<double> ticks = round_ticks(axes.y_least, axes.y_most, 5);
+    for (const double value : ticks) {
         const double y = on_drawing(axes, axes.x_least, value).y;
-        svg += level_line(y, "grid") + text_at({left - 6, y + 4}, "end", readable(value, 5));
+        svg += level_line(y, "grid") + text_at({left - 6, y + 4}, "end", readable(value, digits_for(ticks)));
     }
     for (const double value : round_ticks(axes.x_least, axes.x_most, 6)) {
         const double x = on_drawing(axes, value, axes.y_least).x;
@@ -193,9 +204,9 @@ std::string draw_legend(const Chart& chart) {
 
 TimeAxis time_axis(std::vector<double> seconds) {
     const double end = seconds.empty() ? 1 : seconds.back();
-    const auto [scale, unit] = end < 1e-3 ? std::pair{1e6, "µs"} : end < 1 ? std::pair{1e3, "ms"} : std::pair{1.0, "s"};
+    const auto [scale, unit] = unit_for(end, "s");
     for (double& t : seconds) t *= scale;
-    return {std::move(seconds), std::string("t [") + unit + "]"};
+    return {std::move(seconds), "time [" + unit + "]"};
 }
 
 std::string draw_chart(const Chart& whole) {
@@ -211,6 +222,27 @@ std::string draw_chart(const Chart& whole) {
     html += chart.marks == Chart::Marks::lines ? draw_lines(chart, axes) : draw_columns(chart, axes);
     if (chart.limit) html += level_line(on_drawing(axes, axes.x_least, *chart.limit).y, "limit");
     return html + draw_hints(chart, axes) + "</svg></figure>";
+}
+
+std::vector<std::size_t> chosen_lines(std::size_t count) {
+    std::vector<std::size_t> all;
+    const std::size_t most = std::min(count, most_lines);
+    for (std::size_t i = 0; i < most; ++i) all.push_back(most == count ? i : i * (count - 1) / (most - 1));
+    return all;
+}
+
+std::string not_all_lines(std::size_t count, const char* what) {
+    if (count <= most_lines) return {};
+    return "<p class=\"soft\">" + readable_count(most_lines) + " of " + readable_count(static_cast<double>(count)) +
+           " " + what + ", evenly chosen.</p>";
+}
+
+void colour_lines(std::vector<Series>& series) {
+    constexpr std::size_t of_page = 3;
+    constexpr double dark = 0.3, light = 0.82;  // on white and on black
+    const double step = (light - dark) / static_cast<double>(series.size() - 1);
+    for (std::size_t i = 0; series.size() > of_page && i < series.size(); ++i)
+        series[i].colour = inferno(dark + step * static_cast<double>(i));
 }
 
 }  // namespace kropla

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <limits>
 
 namespace kropla {
@@ -143,12 +144,13 @@ std::string field_rows(const std::vector<CutFrame>& frames, const Watch* watch) 
         return draw_field(f.cut, field_named(f, name)->values, least, most, window);
     };
     const std::string title = escaped(name + (unit.empty() ? "" : " [" + unit + "]"));
-    return row("Field: " + title, frames, whole, draw) + draw_colour_bar(title, least, most);
+    const std::string heading = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0]))) + title.substr(1);
+    return row(heading + ", cut", frames, whole, draw) + draw_colour_bar(title, least, most);
 }
 
 }  // namespace
 
-std::string draw_cuts(const RunFiles& run, const Watch* watch) {
+CutPictures draw_cuts(const RunFiles& run, const Watch* watch) {
     if (run.frames.empty()) return {};
     const std::vector<CutFrame> frames = read_cuts(run, watch);
     const char* axis = axis_names[static_cast<std::size_t>(axis_across_path(frames))];
@@ -156,14 +158,11 @@ std::string draw_cuts(const RunFiles& run, const Watch* watch) {
         heed(watch);
         return draw_cells(f.cut, window);
     };
-    std::string html =
-        std::string(
-            "<section><h2>The mesh, cut</h2><p class=\"soft\">Every cell that the plane across "
-            "the ") +
-        axis + " axis through the first body's centre cuts.</p>";
+    std::string html = std::string("<p class=\"soft\">Cut: every cell that the plane across the ") + axis +
+                       " axis through the first body's centre cuts.</p>";
     html += row("Whole domain", frames, whole, cells);
     if (frames.front().spot.radius > 0) html += row("Around the first body", frames, magnified, cells);
-    return html + field_rows(frames, watch) + "</section>";
+    return {html, field_rows(frames, watch)};
 }
 
 }  // namespace kropla

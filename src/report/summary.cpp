@@ -1,6 +1,8 @@
 #include "report/summary.h"
 
+#include "report/results.h"
 #include "report/svg.h"
+#include "report/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +52,12 @@ void add_work(const Table& steps, Figures& rows) {
                       percent(median(touched)) + " (median), " + percent(largest(touched)) + " (most)");
 }
 
-/// Conserved fields: their integral, its drift over the run, the transfer's largest error.
+/// "rounding, 2e-15", or how much of it.
+std::string missed(double share, const std::string& of) {
+    return (is_rounding(share, 1) ? "rounding, " + readable(std::abs(share), 2) : readable(share, 2)) + of;
+}
+
+/// Conserved fields: their integral, its change over the run, the transfer's largest error.
 void add_balances(const Table& steps, Figures& rows) {
     constexpr std::string_view ending = "_integral";
     for (const Column& column : steps.columns) {
@@ -59,11 +66,12 @@ void add_balances(const Table& steps, Figures& rows) {
         const std::vector<double> values = numbers(steps, column.name);
         const double first = values.front(),
                      drift = (values.back() - first) / (first != 0 ? std::abs(first) : 1);
-        rows.emplace_back("Integral of " + field, readable(values.back(), 6) + " " + column.unit +
-                                                      ", drift " + readable(drift, 2) +
-                                                      (first != 0 ? " of the first" : ""));
+        rows.emplace_back("Stored " + field, with_unit(values.back(), column.unit, 6) +
+                                                 " at the last step; change since the first: " +
+                                                 missed(drift, first != 0 ? " of it" : ""));
         if (const std::string error = field + "_transfer_error"; has_column(steps, error))
-            rows.emplace_back("Largest error of a transfer of " + field, readable(largest_size(numbers(steps, error)), 2));
+            rows.emplace_back("Largest error of a transfer of " + field,
+                              missed(largest_size(numbers(steps, error)), " of it"));
     }
 }
 
@@ -113,8 +121,9 @@ Figures figures(const RunFiles& run, const RunSummary& s) {
     rows.emplace_back("Steps", readable_count(s.steps) + ", to t = " + readable_time(s.reached));
     rows.emplace_back("Frames", readable_count(static_cast<double>(run.frames.size())));
     if (s.steps == 0) return rows;
-    rows.emplace_back("Time step", readable_time(least(numbers(steps, "dt"))) + " to " +
-                                       readable_time(largest(numbers(steps, "dt"))));
+    const std::string shortest = readable_time(least(numbers(steps, "dt"))),
+                      longest = readable_time(largest(numbers(steps, "dt")));
+    rows.emplace_back("Time step", shortest == longest ? longest : shortest + " to " + longest);
     rows.emplace_back("Attempts refused", readable_count(s.refused));
     rows.emplace_back("Vertices", from_to(numbers(steps, "vertices")));
     rows.emplace_back("Tets", from_to(numbers(steps, "tets")));

@@ -20,7 +20,6 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t most_lines = 12;  // of a chart: more cannot be told apart
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 std::optional<double> number_of(const std::string& cell) {
@@ -47,29 +46,6 @@ std::vector<std::size_t> swept_keys(const SweepFile& sweep) {
     for (std::size_t key = 0; key < sweep.keys.size(); ++key)
         if (differs(values_of(sweep, key))) keys.push_back(key);
     return keys;
-}
-
-/// Of `count` at most as many as can be told apart, evenly chosen.
-std::vector<std::size_t> chosen(std::size_t count) {
-    std::vector<std::size_t> all;
-    const std::size_t most = std::min(count, most_lines);
-    for (std::size_t i = 0; i < most; ++i) all.push_back(most == count ? i : i * (count - 1) / (most - 1));
-    return all;
-}
-
-/// Colours from dark to light where the page has not enough of its own.
-void colour(std::vector<Series>& series) {
-    constexpr std::size_t of_page = 3;
-    constexpr double dark = 0.3, light = 0.82;  // on white and on black
-    const double step = (light - dark) / static_cast<double>(series.size() - 1);
-    for (std::size_t i = 0; series.size() > of_page && i < series.size(); ++i)
-        series[i].colour = inferno(dark + step * static_cast<double>(i));
-}
-
-std::string not_all(std::size_t count, const char* what) {
-    if (count <= most_lines) return {};
-    return "<p class=\"soft\">" + readable_count(most_lines) + " of " + readable_count(static_cast<double>(count)) +
-           " " + what + ", evenly chosen.</p>";
 }
 
 /// The axis of the first key that has several values: as numbers, or where they are none, counted.
@@ -121,10 +97,10 @@ Chart over_parameter(const SweepFile& sweep, const ParameterAxis& axis, std::siz
             series->values[axis.place(sweep.runs[r])] = number_of(column.cells[r]).value_or(no_number);
     }
     std::vector<Series> shown;
-    for (const std::size_t s : chosen(chart.series.size())) shown.push_back(chart.series[s]);
+    for (const std::size_t s : chosen_lines(chart.series.size())) shown.push_back(chart.series[s]);
     if (shown.size() == 1) shown.front().name = column.name;
     chart.series = std::move(shown);
-    colour(chart.series);
+    colour_lines(chart.series);
     return chart;
 }
 
@@ -167,11 +143,11 @@ Chart over_time(const std::vector<Steps>& runs, const Column& column) {
         runs, {}, [](const Steps& run) { return std::pair(run.time.back(), run.time.size()); });
     const TimeAxis axis = time_axis(longest.time);
     Chart chart{column.name, column.unit, axis.values, axis.title, {}};
-    for (const std::size_t r : chosen(runs.size()))
+    for (const std::size_t r : chosen_lines(runs.size()))
         if (has_column(runs[r].table, column.name))
             chart.series.push_back(
                 {runs[r].name, at_times(longest.time, runs[r].time, numbers(runs[r].table, column.name))});
-    colour(chart.series);
+    colour_lines(chart.series);
     return chart;
 }
 
@@ -244,7 +220,7 @@ std::string draw_over_parameter(const SweepFile& sweep, const std::vector<const 
     std::string drawn;
     for (const Column* column : differing) drawn += draw_chart(over_parameter(sweep, axis, keys.front(), *column));
     const std::string note = "<p class=\"soft\">At the last step of the runs that are done.</p>";
-    return charts("Over " + sweep.keys[keys.front()], note + not_all(lines.size(), "lines"), drawn);
+    return charts("Over " + sweep.keys[keys.front()], note + not_all_lines(lines.size(), "lines"), drawn);
 }
 
 std::string draw_over_time(const std::filesystem::path& dir, const SweepFile& sweep,
@@ -254,7 +230,7 @@ std::string draw_over_time(const std::filesystem::path& dir, const SweepFile& sw
     std::string drawn;
     for (const Column* column : differing)
         if (column->name != "step" && column->name != "time") drawn += draw_chart(over_time(runs, *column));
-    return charts("Over time", not_all(runs.size(), "runs"), drawn);
+    return charts("Over time", not_all_lines(runs.size(), "runs"), drawn);
 }
 
 }  // namespace

@@ -67,6 +67,13 @@ Table parse_table(std::string_view text, const std::string& file) {
     return table;
 }
 
+std::string csv_cell(const std::string& text) {
+    if (text.find_first_of(",\"") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
 bool has_column(const Table& table, std::string_view name) {
     return std::ranges::any_of(table.columns, [&](const Column& c) { return c.name == name; });
 }

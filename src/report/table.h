@@ -27,6 +27,9 @@ struct Table {
 /// As above, from the text itself; `file` stands in errors.
 [[nodiscard]] Table parse_table(std::string_view text, const std::string& file);
 
+/// A text as it stands in a cell: in quotes where it has to be.
+[[nodiscard]] std::string csv_cell(const std::string& text);
+
 [[nodiscard]] bool has_column(const Table& table, std::string_view name);
 
 /// The column's cells as numbers. Throws FileError if there is no such column, or a cell is not a number:

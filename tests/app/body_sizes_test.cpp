@@ -39,15 +39,21 @@ TEST(BodySizes, AreThoseAskedForAndThoseOfTheMesh) {
 
 TEST(BodySizes, AreWrittenAsATableThatReadsBack) {
     const TemporaryFolder folder;
-    const std::vector<BodySize> sizes = {{"a", {1, 2, 3}, 0.1, 0.1 + 1e-16, 44, 1.0 / 3},
+    const std::vector<BodySize> sizes = {{"a, \"left\"", {1, 2, 3}, 0.1, 0.1 + 1e-16, 44, 1.0 / 3},
                                          {"b", {1e-6, 2e-6, 3e-6}, 1e-17, 1e-17, 12, 1e-7}};
-    write_body_sizes(folder.path / "bodies.csv", sizes);
+    const std::vector<BodyState> at_start = {{.place = {1, 2, 3}, .coldest = 300, .mean = 301, .hottest = 302}, {}};
+    write_bodies(folder.path / "bodies.csv", sizes, at_start, true);
     const Table table = read_table(folder.path / "bodies.csv");
     EXPECT_EQ(numbers(table, "body"), (std::vector<double>{1, 2}));
     EXPECT_EQ(numbers(table, "semi_axis_3"), (std::vector<double>{3, 3e-6}));
     EXPECT_EQ(numbers(table, "mesh_volume"), (std::vector<double>{0.1 + 1e-16, 1e-17}));
     EXPECT_EQ(numbers(table, "triangles"), (std::vector<double>{44, 12}));
     EXPECT_EQ(numbers(table, "mean_edge"), (std::vector<double>{1.0 / 3, 1e-7}));
+    EXPECT_EQ(table.columns[1].cells, (std::vector<std::string>{"a, \"left\"", "b"}));
+    EXPECT_EQ(numbers(table, "z"), (std::vector<double>{3, 0}));
+    EXPECT_EQ(numbers(table, "temperature_mean"), (std::vector<double>{301, 0}));
+    write_bodies(folder.path / "bodies.csv", sizes, at_start, false);
+    EXPECT_FALSE(has_column(read_table(folder.path / "bodies.csv"), "temperature_mean"));
 }
 
 TEST(BodySizes, AreSaidOfTheFirstFewBodies) {

@@ -39,7 +39,7 @@ TEST(Ranks, MoveTheSameMeshAndShareTheSolution) {
     const Outcome it = two_ranks(folder, "run a.toml --out two");
     ASSERT_EQ(it.code, 0) << it.err;
     const std::string steps_said = it.out.substr(opening_of(it.out));
-    EXPECT_EQ(std::ranges::count(steps_said, '\n'), 4) << it.out;  // every line once, and the last
+    EXPECT_EQ(std::ranges::count(steps_said, '\n'), 7) << it.out;  // every line once, and the last four
     EXPECT_EQ(it.out.find('\r'), std::string::npos) << it.out;
     for (const auto& [name, bytes] : frames(folder.path / "one")) {
         SCOPED_TRACE(name);

@@ -11,6 +11,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::size_t opening = 0;  // what the whole run said before its first step
+std::string results;      // and at its end, of what came out
+
+/// What a run said at its end, but for how long it took and where it is.
+std::string results_said(const std::string& out) {
+    const std::size_t begin = out.find("\ndroplet: ");
+    return begin == std::string::npos ? "" : out.substr(begin, out.find("\nsee ") - begin);
+}
 
 /// The case, run without a stop: the folder "whole".
 void run_whole(const TemporaryFolder& folder, const std::string& text) {
@@ -18,6 +25,8 @@ void run_whole(const TemporaryFolder& folder, const std::string& text) {
     const Outcome it = kropla_program(folder, "run a.toml --out whole");
     ASSERT_EQ(it.code, 0);
     opening = opening_of(it.out);
+    results = results_said(it.out);
+    ASSERT_NE(results, "");
 }
 
 /// Begins the case in the folder "d" and sends the signal in the step `at`, after its frame, if it has one.
@@ -47,7 +56,9 @@ TEST(Resume, EqualsTheWholeRunAfterAnInterrupt) {
                 << it.out;
             EXPECT_EQ(rows(folder), 2u);
             EXPECT_EQ(read_pvd(folder.path / "d/frames.pvd").size(), every == 1 ? 3u : 1u);
-            EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+            const Outcome rest = kropla_program(folder, "run a.toml --out d --resume");
+            EXPECT_EQ(rest.code, 0);
+            EXPECT_EQ(results_said(rest.out), results);
             expect_same_run(folder.path / "d", folder.path / "whole");
             fs::remove_all(folder.path / "d");
         }

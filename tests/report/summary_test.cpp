@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace kropla {
 namespace {
 
@@ -23,6 +25,20 @@ TEST(Summary, CountsTheRun) {
     EXPECT_DOUBLE_EQ(s.mesh_seconds, 1.25);
     EXPECT_EQ(s.floor, 10);
     EXPECT_EQ(s.end, 0.5);
+}
+
+TEST(Summary, CallsRoundingWhatIsOne) {
+    RunFiles run = tiny({});
+    const auto figure = [&](const std::string& name) {
+        const Figures all = figures(run, summarise_run(run));
+        return std::ranges::find(all, name, &Figures::value_type::first)->second;
+    };
+    EXPECT_EQ(figure("Largest error of a transfer of energy"), "rounding, 1e-15 of it");
+    EXPECT_EQ(figure("Stored energy"), "105 J at the last step; change since the first: 0.04 of it");
+    EXPECT_EQ(figure("Time step"), "100 ms");
+    for (Column& column : run.steps.columns)
+        if (column.name == "energy_transfer_error") column.cells[2] = "-0.001";
+    EXPECT_EQ(figure("Largest error of a transfer of energy"), "0.001 of it");
 }
 
 TEST(Summary, JudgesTheRun) {

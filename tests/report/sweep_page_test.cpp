@@ -42,7 +42,7 @@ TEST(SweepPage, ComparesWhatDiffers) {
     EXPECT_EQ(html.find("same"), std::string::npos);
     EXPECT_EQ(html.find("time [s]</figcaption>"), std::string::npos);
     EXPECT_NE(html.find("a: 2\ndrop: 7 K"), std::string::npos);  // what is seen when pointing at it
-    EXPECT_NE(html.find("t [s]: 0.25\na=1,b=0: 1 K\na=2,b=0: nan K"), std::string::npos);
+    EXPECT_NE(html.find("time [s]: 0.25\na=1,b=0: 1 K\na=2,b=0: nan K"), std::string::npos);
     EXPECT_NE(html.find("<a href=\"a=2,b=0/report.html\">"), std::string::npos);
     EXPECT_EQ(html.find("<a href=\"a=1,b=0"), std::string::npos);  // has no page
     EXPECT_EQ(html.find("http"), std::string::npos);

@@ -47,6 +47,11 @@ TEST(Table, RefusesWhatIsBrokenAndSaysWhere) {
               std::string::npos);
 }
 
+TEST(Table, ReadsWhatCellsWereMadeOf) {
+    for (const std::string text : {"plain", "a,b", "say \"no\"", "\","})
+        EXPECT_EQ(parse_table("x,y\n" + csv_cell(text) + ",2\n", "a.csv").columns[0].cells[0], text);
+}
+
 TEST(Table, KnowsCellsInQuotes) {
     const Table table = parse_table("run,body[0].radius,\"a,b\"\n\"r=1,d=2\",3,\"say \"\"no\"\", twice\"\nx,,\"\"\n", "a.csv");
     ASSERT_EQ(table.columns.size(), 3u);

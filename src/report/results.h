@@ -1,0 +1,65 @@
+#pragma once
+
+#include <kropla/base/vec3.h>
+#include "report/run_files.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kropla {
+
+/// What came out for a body. Vectors have a value per step; those of heat are empty where none is simulated.
+struct BodyResult {
+    std::string name;                   // as the case has it; of older runs, as columns have it
+    std::vector<Vec3> place, velocity;  // [m] of the centroid, [m/s]
+    std::vector<double> volume;         // [m^3]
+    std::vector<double> coldest = {}, mean = {}, hottest = {};  // [K]
+    std::vector<double> heat_from = {};           // [W] conducted out through its surface
+    double given_off = 0;                         // [J] of that, over the run
+    Vec3 start_place = {};                        // [m]; where bodies.csv does not tell, of the first step
+    std::optional<double> start_mean = {};        // [K] likewise
+    std::optional<double> least = {}, most = {};  // [K] of the run
+};
+/// The largest of its coordinates on its way, or its size if that is larger [m].
+[[nodiscard]] double length_scale(const BodyResult& body);
+/// Does it move at all, by more than rounding?
+[[nodiscard]] bool moves(const BodyResult& body);
+
+/// The heat that leaves through a face of the box.
+struct FaceResult {
+    std::string name;         // "x_min"
+    std::vector<double> out;  // [W] per step
+    double total = 0;         // [J] over the run
+};
+
+/// Where the energy of a run came from and went [J].
+struct EnergyBalance {
+    double start = 0, end = 0;                              // stored
+    std::vector<double> stored;                             // after each step
+    double faces = 0, sources = 0, surfaces = 0, held = 0;  // brought in by each
+    double size = 0;  // the largest that was stored at any time or has passed: what an error is compared with
+
+    [[nodiscard]] double brought() const { return faces + sources + surfaces + held; }
+    [[nodiscard]] double error() const { return end - start - brought(); }
+    [[nodiscard]] double relative_error() const { return size > 0 ? error() / size : 0; }
+};
+
+/// Below this share of what it is compared with, a figure of a run is rounding: single errors are some 1e-16, and add
+/// up over vertices and steps.
+inline constexpr double rounding_share = 1e-11;
+/// Is it nothing but rounding, compared with `size`?
+[[nodiscard]] bool is_rounding(double value, double size);
+
+/// What came out of a run, from its steps.
+struct RunResults {
+    std::vector<double> time;  // [s] per step
+    bool start_known = false;  // else the first step stands for the start
+    std::vector<BodyResult> bodies;
+    std::vector<FaceResult> faces;  // all six, or none
+    std::optional<EnergyBalance> energy;
+};
+/// Runs of older versions lack columns: what they would tell is not there. Throws FileError if a cell is no number.
+[[nodiscard]] RunResults results_of(const RunFiles& run);
+
+}  // namespace kropla
