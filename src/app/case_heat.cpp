@@ -66,12 +66,17 @@ public:
                 table_.refuse_value(key, most > 0 ? "must be from 0 to 1" : "must be at least 0");
         }
         exchange.ambient = quantity_of("ambient");
+        if (exchange.emissivity && exchange.ambient(probe_, 0) < 0)
+            table_.refuse_value("ambient", "must be at least 0 [K] where something radiates");
         return exchange;
     }
 
     /// A distribution, and the whole of it.
     std::pair<Quantity, Quantity> flux_and_power(std::string_view key) {
         Quantity flux = quantity_of(key), power = quantity_of("power");
+        const Constant* spread = flux.target<Constant>();
+        if (power && spread != nullptr && spread->value == 0)
+            table_.refuse_value(key, "must not be zero beside power, which is spread by it; leave it out to spread it evenly");
         return {std::move(flux), std::move(power)};
     }
 
