@@ -11,10 +11,11 @@
 # make bench-spread  ways to spread a body's displacement into its surroundings
 # make bench-transfer  1000 transfers to and fro, by interpolation and by projection: docs/transfer.md
 # make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer
+# make validate   heat, by problems with known solutions, as fine as the tests take them and finer: docs/validation.md
 # Each installs the Debian packages that are missing.
 
-.PHONY: all demo test flood bench bench-peers bench-engine bench-strategies bench-spread bench-transfer endurance packages \
-        configure clean
+.PHONY: all demo test flood bench bench-peers bench-engine bench-strategies bench-spread bench-transfer endurance \
+        validate packages configure clean
 
 all: configure
 	cmake --build --preset release
@@ -72,6 +73,11 @@ endurance: packages
 	cmake --preset bench
 	cmake --build --preset bench --target kropla_endurance
 	build/bench/bin/kropla_endurance $(STEPS)
+
+validate: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla_validate
+	build/bench/bin/kropla_validate
 
 clean:
 	rm -rf build demo flood

@@ -2,10 +2,12 @@
 #include "app/case_heat.h"
 
 #include "app/noted_table.h"
+#include "simulate/step_mean.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace kropla {
@@ -24,7 +26,18 @@ HeatExchange read_exchange(NotedTable& noted) {
     if (exchange.emissivity && !(noted.at_probe(exchange.emissivity) >= 0 && noted.at_probe(exchange.emissivity) <= 1))
         table.refuse_value("emissivity", "must be from 0 to 1");
     exchange.ambient = noted.quantity("ambient");
+    if (exchange.emissivity && noted.at_probe(exchange.ambient) < 0)
+        table.refuse_value("ambient", "must be at least 0 [K] where something radiates");
     return exchange;
+}
+
+/// A distribution, and the whole of it.
+std::pair<Quantity, Quantity> flux_and_power(NotedTable& noted, std::string_view key) {
+    Quantity flux = noted.quantity(key), power = noted.quantity("power");
+    const Constant* spread = flux.target<Constant>();
+    if (power && spread != nullptr && spread->value == 0)
+        noted.table().refuse_value(key, "must not be zero beside power, which is spread by it; leave it out to spread it evenly");
+    return {std::move(flux), std::move(power)};
 }
 
 HeatStart read_start(NotedTable& table) {
@@ -65,16 +78,14 @@ HeatRegion read_region(NotedTable table) {
     region.material.density = table.property("density", usual);
     region.material.specific_heat = table.property("specific_heat", usual);
     read_latent_heat(table, region.material);
-    region.source = table.quantity("source");
-    region.power = table.quantity("power");
+    std::tie(region.source, region.power) = flux_and_power(table, "source");
     return region;
 }
 
 HeatSurface read_surface(NotedTable table) {
     table.table().allow({"flux", "power", "coefficient", "emissivity", "ambient"});
     HeatSurface surface;
-    surface.flux = table.quantity("flux");
-    surface.power = table.quantity("power");
+    std::tie(surface.flux, surface.power) = flux_and_power(table, "flux");
     surface.exchange = read_exchange(table);
     return surface;
 }
@@ -103,8 +114,7 @@ HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
         read.quantity = face.quantity("value");
     } else if (flux) {
         read.kind = HeatFace::Kind::flux;
-        read.quantity = face.quantity("flux");
-        read.power = face.quantity("power");
+        std::tie(read.quantity, read.power) = flux_and_power(face, "flux");
     } else {
         read.kind = HeatFace::Kind::exchange;
         read.exchange = read_exchange(face);

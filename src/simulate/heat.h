@@ -53,7 +53,8 @@ namespace kropla {
 // Where a temperature would be a new extremum, cells are of low order (bounded.h): M lumped, no L, no SUPG.
 //
 // Where rho c depends on the temperature, or latent heat is taken up, M and C act on the enthalpy h(T) per volume
-// instead of rho c T, and the step is repeated: h about the last temperatures by Newton's method, differences of h
+// instead of rho c T, and the step is repeated: h about the last temperatures by Newton's method (of a vertex's new
+// temperature and what its new enthalpy makes, the one nearer to the last is taken), differences of h
 // between corners by chords, k at the last temperatures, until these stay. What is kept is the integral of h, taken as
 // linear between vertices. Radiation at boundaries likewise.
 

@@ -56,6 +56,7 @@ Enthalpy::Enthalpy(const HeatMaterial& m) {
     const std::vector<double> knot = knots(m);
     const double first = knot.empty() ? 0 : knot.front();
     piece_.push_back({0, 0, capacity(first), 0});
+    fall_.push_back({0, 0, 0, 0});
     if (knot.empty()) return;
     piece_.front() = {first, capacity(first) * first, capacity(first), 0};  // and below it
     const double molten = m.latent_heat > 0 ? m.density(m.solidus) * m.latent_heat / (m.liquidus - m.solidus) : 0;
@@ -69,23 +70,50 @@ Enthalpy::Enthalpy(const HeatMaterial& m) {
         piece_.push_back({knot[k], enthalpy, begin, last ? 0 : (end - begin) / width});
         enthalpy += width * (begin + end) / 2;
     }
+    sum_falls();
 }
 
-const Enthalpy::Piece& Enthalpy::piece_at(double temperature) const {
-    const auto beyond = std::upper_bound(piece_.begin() + 1, piece_.end(), temperature,
+/// Of each piece, by how much the slope has fallen up to it, and falls in it.
+void Enthalpy::sum_falls() {
+    fall_ = {{piece_.front().temperature, 0, 0, 0}};
+    for (std::size_t k = 1; k < piece_.size(); ++k) {
+        const Piece &last = piece_[k - 1], &here = piece_[k], &summed = fall_.back();
+        const double width = here.temperature - last.temperature, end = last.slope + last.bend * width;
+        const double so_far = summed.slope + summed.bend * width;
+        fall_.push_back({here.temperature, summed.enthalpy + width * (summed.slope + so_far) / 2,
+                         so_far + std::max(0.0, end - here.slope), std::max(0.0, -here.bend)});
+    }
+}
+
+double Enthalpy::value_of(const std::vector<Piece>& pieces, double temperature) {
+    const auto beyond = std::upper_bound(pieces.begin() + 1, pieces.end(), temperature,
                                          [](double t, const Piece& piece) { return t < piece.temperature; });
-    return *(beyond - 1);
+    const Piece& piece = *(beyond - 1);
+    const double more = temperature - piece.temperature;
+    return piece.enthalpy + more * (piece.slope + 0.5 * piece.bend * more);
+}
+
+double Enthalpy::slope_of(const std::vector<Piece>& pieces, double temperature) {
+    const auto beyond = std::upper_bound(pieces.begin() + 1, pieces.end(), temperature,
+                                         [](double t, const Piece& piece) { return t < piece.temperature; });
+    const Piece& piece = *(beyond - 1);
+    return piece.slope + piece.bend * (temperature - piece.temperature);
 }
 
 double Enthalpy::operator()(double temperature) const {
-    const Piece& piece = piece_at(temperature);
-    const double beyond = temperature - piece.temperature;
-    return piece.enthalpy + beyond * (piece.slope + 0.5 * piece.bend * beyond);
+    return value_of(piece_, temperature);
 }
 
 double Enthalpy::slope(double temperature) const {
-    const Piece& piece = piece_at(temperature);
-    return piece.slope + piece.bend * (temperature - piece.temperature);
+    return slope_of(piece_, temperature);
+}
+
+double Enthalpy::fallen(double temperature) const {
+    return value_of(fall_, temperature);
+}
+
+double Enthalpy::fallen_slope(double temperature) const {
+    return slope_of(fall_, temperature);
 }
 
 double Enthalpy::temperature(double enthalpy) const {

@@ -43,6 +43,10 @@ public:
     [[nodiscard]] double operator()(double temperature) const;
     [[nodiscard]] double slope(double temperature) const;  // [J/(m^3 K)]; at a jump the one beyond it
     [[nodiscard]] double temperature(double enthalpy) const;
+    /// What all falls of the slope at colder temperatures sum up to, and the integral of it: with them added, the slope and
+    /// the enthalpy only bend upwards.
+    [[nodiscard]] double fallen(double temperature) const;        // [J/m^3]
+    [[nodiscard]] double fallen_slope(double temperature) const;  // [J/(m^3 K)]
 
 private:
     /// From a temperature on, up to that of the next piece.
@@ -50,9 +54,11 @@ private:
         double temperature, enthalpy;
         double slope, bend;  // at its begin, and how it rises [J/(m^3 K^2)]
     };
-    [[nodiscard]] const Piece& piece_at(double temperature) const;
+    static double value_of(const std::vector<Piece>& pieces, double temperature);
+    static double slope_of(const std::vector<Piece>& pieces, double temperature);
+    void sum_falls();
 
-    std::vector<Piece> piece_;
+    std::vector<Piece> piece_, fall_;
 };
 
 }  // namespace kropla

@@ -129,6 +129,60 @@ TEST(CaseErrors, ValuesOutOfRange) {
     });
 }
 
+TEST(CaseErrors, MaterialsByTheTemperature) {
+    expect_refusals({
+        {"density = 7000", "density = { T = [300, 300], value = [1, 2] }",
+         "heat.region.droplet.density.T (line 35): must rise, got 300 after 300"},
+        {"density = 7000", "density = { T = [300, 400], value = [1, 0] }",
+         "heat.region.droplet.density.value (line 35): must be positive, got 0 at T = 400"},
+        {"density = 7000", "density = { T = [300, 400], value = [1] }",
+         "heat.region.droplet.density.value (line 35): must be as many numbers as T has, 2, got 1"},
+        {"density = 7000", "density = { T = [300], value = [1] }",
+         "heat.region.droplet.density.T (line 35): must be at least two temperatures, got [300]"},
+        {"density = 7000", "density = \"300 - T\"",
+         "heat.region.droplet.density (line 35): must be positive, but \"300 - T\" is -2100.5 at T = 2400.5"},
+        {"density = 7000", "density = 7000\nlatent_heat = -1\nsolidus = 1\nliquidus = 2",
+         "heat.region.droplet.latent_heat (line 36): must be at least 0, got -1"},
+        {"density = 7000", "density = 7000\nlatent_heat = 2e5\nsolidus = 1800\nliquidus = 1800",
+         "heat.region.droplet.solidus (line 37): must be below liquidus, 1800, got 1800"},
+        {"density = 7000", "density = 7000\nlatent_heat = 2e5\nsolidus = 1800",
+         "heat.region.droplet.liquidus (line 33): is missing; it must be a finite number"},
+    });
+}
+
+TEST(CaseErrors, WhatExchangesHeatAndPowers) {
+    expect_refusals({
+        {"{ value = 300 }", "{ emissivity = 1.2, ambient = 300 }",
+         "heat.face.x_min.emissivity (line 45): must be from 0 to 1, got 1.2"},
+        {"{ value = 300 }", "{ emissivity = -0.1, ambient = 300 }",
+         "heat.face.x_min.emissivity (line 45): must be from 0 to 1, got -0.1"},
+        {"{ value = 300 }", "{ coefficient = -5, ambient = 300 }",
+         "heat.face.x_min.coefficient (line 45): must be at least 0, got -5"},
+        {"{ value = 300 }", "{ emissivity = 0.5, ambient = -3 }",
+         "heat.face.x_min.ambient (line 45): must be at least 0 [K] where something radiates, got -3"},
+        {"{ value = 300 }", "{ emissivity = 0.5 }",
+         "heat.face.x_min.ambient (line 45): is missing; it must be the temperature [K] with which heat is exchanged"},
+        {"{ value = 300 }", "{ ambient = 300 }",
+         "heat.face.x_min.ambient (line 45): needs a coefficient [W/(m^2 K)] or an emissivity beside it"},
+        {"{ value = 300 }", "{ flux = 0, power = 5 }",
+         "heat.face.x_min.flux (line 45): must not be zero beside power, which is spread by it; leave it out to spread it "
+         "evenly, got 0"},
+        {"source = \"1e6*x*t + y - z\"", "source = 0\npower = 10",
+         "heat.region.droplet.source (line 38): must not be zero beside power, which is spread by it; leave it out to "
+         "spread it evenly, got 0"},
+    });
+}
+
+TEST(CaseErrors, SteadyStatesThatAreNotUnique) {
+    std::string text(full_case);
+    for (const std::string_view initial : {"initial = 300\n", "initial = 2400.5\n", "initial = 300.1\n"})
+        text = replaced(text, initial, "initial = \"steady\"\n");
+    EXPECT_EQ(refusal(text), "");  // a face says how warm it is
+    EXPECT_EQ(refusal(replaced(text, "{ value = 300 }", "\"insulated\"")),
+              "case.toml: heat.region.surroundings.initial (line 32): there is no steady state, or more than one, as nothing "
+              "says how warm it is: give a region a temperature, or a face a value or an exchange of heat");
+}
+
 TEST(CaseErrors, Bodies) {
     expect_refusals({
         {"\"droplet\"", "\"\"", "body[0].name (line 5): must not be empty, got \"\""},

@@ -1,0 +1,67 @@
+// Problems with known solutions (tests/simulate/heat_problems.h), as fine as the tests take them and finer, in one table:
+// docs/validation.md.
+#include "simulate/heat_problems.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace kropla;
+
+struct Problem {
+    std::string name;
+    std::function<Outcome(const Ranks&, int fineness)> solve;
+};
+
+const std::vector<Problem> problems = {
+    {"one phase freezes, Ste 0.1", [](const Ranks& r, int f) { return one_phase_stefan(r, 0.1, f); }},
+    {"one phase freezes, Ste 1", [](const Ranks& r, int f) { return one_phase_stefan(r, 1, f); }},
+    {"two phases, all properties one", [](const Ranks& r, int f) { return two_phase_stefan(r, unit_phases, f); }},
+    {"two phases, like iron", [](const Ranks& r, int f) { return two_phase_stefan(r, iron_phases, f); }},
+    {"ball freezes outwards", freezing_ball},
+    {"sphere, Bi 1", [](const Ranks& r, int f) { return robin_sphere(r, 1, f); }},
+    {"sphere in a like medium", sphere_in_like_medium},
+    {"sphere in a poor medium", sphere_in_poor_medium},
+    {"sphere, constant flux", heated_sphere},
+    {"sphere radiates to 0 K", [](const Ranks& r, int f) { return radiating_sphere(r, 0, f); }},
+    {"sphere radiates to 600 K", [](const Ranks& r, int f) { return radiating_sphere(r, 600, f); }},
+    {"source at rest", [](const Ranks& r, int f) { return resting_source(r, 0.1, f); }},
+    {"source that moves", [](const Ranks& r, int f) { return moving_source(r, 0.25, f); }},
+};
+
+void print_row(const Problem& problem, int fineness, const Outcome& outcome) {
+    for (std::size_t k = 0; k < outcome.reached.size(); ++k) {
+        const Reached& value = outcome.reached[k];
+        const bool first = k == 0;
+        std::printf("| %s | %s | %s | %s | %.7g | %.7g | %+.3f %% | %s |\n", first ? problem.name.c_str() : "",
+                    first ? std::to_string(fineness).c_str() : "", first ? outcome.mesh.c_str() : "",
+                    value.what.c_str(), value.exact, value.value, 100 * value.error(),
+                    first ? outcome.steps.c_str() : "");
+    }
+    std::printf("| | | | energy, of a step [-] | 0 | %.0e | | passes: %d |\n", outcome.balance, outcome.passes);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+/// Of all problems, or of those whose names contain the argument.
+int main(int count, char** words) {
+    try {
+        const PetscSession petsc;
+        const std::string wanted = count > 1 ? words[1] : "";
+        std::puts("| problem | fineness | mesh | quantity | exact | reached | error | steps |\n|---|---|---|---|---|---|---|---|");
+        for (const Problem& problem : problems) {
+            if (problem.name.find(wanted) == std::string::npos) continue;
+            for (int fineness : {1, 2}) print_row(problem, fineness, problem.solve(petsc.all_ranks(), fineness));
+        }
+        return EXIT_SUCCESS;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return EXIT_FAILURE;
+    }
+}
