@@ -8,9 +8,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kropla {
 namespace {
+
+constexpr double rounding = 1e-13;  // [-] of the largest temperature: what a transfer may leave beyond bounds
 
 /// The coldest and hottest vertex of a region.
 struct Extremes {
@@ -71,7 +74,7 @@ public:
             how.contents.push_back([&, s](const Mesh& mesh) { return energy_of(mesh, concentrations(it_, s, state_.fields)); });
         Advanced done = kropla::advance(state_.moving, fields_, options.dt,
                                         [&](const StepToSolve& step) { return solve(step); }, how);
-        if (!enthalpy_.empty()) temperature_of(state_.moving.reference(), *it_.heat, enthalpy_, temperature());
+        if (it_.heat) finish_heat(done);
         return done;
     }
 
@@ -79,6 +82,15 @@ public:
 
 private:
     [[nodiscard]] Array<Vertex, double>& temperature() { return state_.fields.front().values; }
+    /// After the last transfer.
+    void finish_heat(const Advanced& done) {
+        const Mesh& mesh = state_.moving.reference();
+        const HeatExtremes& solved = report.heat.extremes;
+        if (!enthalpy_.empty()) temperature_of(mesh, *it_.heat, enthalpy_, temperature());
+        else if (!done.transfer.empty() && done.transfer.front().beyond > rounding * std::abs(solved.most.value))
+            keep_within(ranks_, mesh, *it_.heat, solved.least.value, solved.most.value, temperature());
+    }
+
     /// Into the arrays that `fields_` knows.
     void take_enthalpies(const Mesh& mesh) {
         std::ranges::move(enthalpies(mesh, *it_.heat, temperature()), enthalpy_.begin());

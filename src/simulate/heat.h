@@ -199,6 +199,11 @@ struct HeatReport {
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt);
 
+/// Brings temperatures that a transfer left beyond `least` and `most` [K] back to them, and what this takes comes from
+/// vertices around (bounded.h): the energy stays. Where enthalpies are proportional. All ranks call it together.
+void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
+                 Array<Vertex, double>& temperature);
+
 /// The energy [J], of all regions or of one: the integral of the enthalpy.
 [[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options,
                             const Array<Vertex, double>& temperature, Region only = {});

@@ -468,6 +468,27 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
     return step_heat_in(ranks, before, current, options, flow, {}, temperature.values, t, dt);
 }
 
+void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
+                 Array<Vertex, double>& temperature) {
+    const Cells cells = living_cells(mesh);
+    const Pattern pattern = make_pattern(mesh, cells, ranks);
+    const std::vector<double> capacity = capacities(options);
+    std::vector<double> held(pattern.numbering.vertex.size(), 0.0), values;
+    for_each_cell(cells, [&](const auto& cell) {
+        const auto vertices = cell_vertices(mesh, cell);
+        const auto points = cell_points(corners(mesh, cell));
+        const double of_region = capacity[static_cast<std::size_t>(cell_region(mesh, cell).value)];
+        for (std::size_t k = 0; k < points.size(); ++k)
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                held[static_cast<std::size_t>(pattern.numbering.row[vertices[i]])] +=
+                    of_region * points[k].volume * shape_means<vertices.size()>[k].value[i];
+    });
+    for (Vertex v : pattern.numbering.vertex) values.push_back(temperature[v]);
+    (void)repair(ranks, pattern, held, least, 1, values);
+    (void)repair(ranks, pattern, held, most, -1, values);
+    for (std::size_t r = 0; r < values.size(); ++r) temperature[pattern.numbering.vertex[r]] = values[r];
+}
+
 void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, NodalField& field) {
     const double dt = long_enough(mesh, options);
     HeatConditions conditions = heat_conditions(mesh, mesh, options, 0, dt, ranks.watch);
