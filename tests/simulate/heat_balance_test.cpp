@@ -129,8 +129,10 @@ TEST(HeatBalanceOfSteps, KnowsWhatHoldsARegion) {
         EXPECT_NE(balance.held[1], 0);
         EXPECT_EQ(balance.held[2], 0);
     }
-    for (Vertex v : mesh.position.indices())
-        if (of_body[v]) EXPECT_EQ(field.values[v], 1900);
+    for (Vertex v : mesh.position.indices()) {
+        if (!of_body[v]) continue;
+        EXPECT_EQ(field.values[v], 1900);
+    }
 }
 
 }  // namespace
