@@ -127,6 +127,21 @@ template <std::size_t n>
 template <std::size_t n>
 inline constexpr std::array<ShapeMeans<n>, points_of_cell<n>> shape_means = make_shape_means<n>();
 
+/// Calls `visit(cell, vertex, share)` for each corner of the cells, with the integral of its shape function [m^3].
+template <class Visit>
+void for_each_share(const Mesh& mesh, const Cells& cells, const Visit& visit) {
+    for_each_cell(cells, [&](const auto& cell) {
+        const auto vertices = cell_vertices(mesh, cell);
+        const auto points = cell_points(corners(mesh, cell));
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            double share = 0;
+            for (std::size_t k = 0; k < points.size(); ++k)
+                share += points[k].volume * shape_means<vertices.size()>[k].value[i];
+            visit(cell, vertices[i], share);
+        }
+    });
+}
+
 /// The mean, for point k, of what has these values at the corners.
 template <std::size_t n, class T>
 [[nodiscard]] T mean_value(std::size_t k, const std::array<T, n>& values) {

@@ -47,13 +47,7 @@ Array<Vertex, double> swept_by_boundary(const Step& step, Region region) {
 /// The integrals of phi_i over the cells [m^3].
 Array<Vertex, double> shares_of_volume(const Mesh& mesh, const Cells& cells) {
     Array<Vertex, double> share(mesh.position.size(), 0.0);
-    for_each_cell(cells, [&](const auto& cell) {
-        const auto vertices = cell_vertices(mesh, cell);
-        const auto points = cell_points(corners(mesh, cell));
-        for (std::size_t k = 0; k < points.size(); ++k)
-            for (std::size_t i = 0; i < vertices.size(); ++i)
-                share[vertices[i]] += points[k].volume * shape_means<vertices.size()>[k].value[i];
-    });
+    for_each_share(mesh, cells, [&](const auto&, Vertex v, double volume) { share[v] += volume; });
     return share;
 }
 

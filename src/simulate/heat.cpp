@@ -149,17 +149,11 @@ void temperature_of(const Mesh& mesh, const HeatOptions& options, const std::vec
         double volume = 0;
     };
     Array<Vertex, std::vector<Part>> parts(mesh.position.size());  // of each region at the vertex
-    for_each_cell(living_cells(mesh), [&](const auto& cell) {
+    for_each_share(mesh, living_cells(mesh), [&](const auto& cell, Vertex v, double volume) {
         const Region region = cell_region(mesh, cell);
-        const auto vertices = cell_vertices(mesh, cell);
-        const auto points = cell_points(corners(mesh, cell));
-        for (std::size_t i = 0; i < vertices.size(); ++i) {
-            auto& at = parts[vertices[i]];
-            auto part = std::ranges::find(at, region, &Part::region);
-            if (part == at.end()) part = at.insert(at.end(), {region});
-            for (std::size_t k = 0; k < points.size(); ++k)
-                part->volume += points[k].volume * shape_means<vertices.size()>[k].value[i];
-        }
+        auto part = std::ranges::find(parts[v], region, &Part::region);
+        if (part == parts[v].end()) part = parts[v].insert(part, {region});
+        part->volume += volume;
     });
     temperature.resize(mesh.position.size(), 0.0);
     for (Vertex v : parts.indices()) {

@@ -52,13 +52,7 @@ Shares listed(const Array<Vertex, double>& size) {
 
 Shares shares_of_region(const Mesh& mesh, Region region) {
     Array<Vertex, double> volume(mesh.position.size(), 0.0);
-    for_each_cell(living_cells(mesh, region), [&](const auto& cell) {
-        const auto vertices = cell_vertices(mesh, cell);
-        const auto points = cell_points(corners(mesh, cell));
-        for (std::size_t k = 0; k < points.size(); ++k)
-            for (std::size_t i = 0; i < vertices.size(); ++i)
-                volume[vertices[i]] += points[k].volume * shape_means<vertices.size()>[k].value[i];
-    });
+    for_each_share(mesh, living_cells(mesh, region), [&](const auto&, Vertex v, double share) { volume[v] += share; });
     return listed(volume);
 }
 
@@ -123,20 +117,20 @@ class Boundary {
 public:
     Boundary(const StepInTime& step, HeatConditions& conditions) : step_(step), conditions_(conditions) {}
 
-    void add_flux(const Shares& shares, const Quantity& flux, const Quantity& power, Door door, const std::string& key) {
+    void add_flux(const Shares& shares, const Quantity& flux, const Quantity& power, Origin origin, const std::string& key) {
         if (!flux && !power) return;
         std::vector<double> means = means_at(step_, flux ? flux : one_everywhere(), shares.vertices, key + ".flux");
         scale_to_power(step_, power, shares, key, means);
         for (std::size_t k = 0; k < means.size(); ++k)
-            conditions_.shares.push_back({.vertex = shares.vertices[k], .door = door, .flux = means[k] * shares.size[k]});
+            conditions_.shares.push_back({.vertex = shares.vertices[k], .origin = origin, .flux = means[k] * shares.size[k]});
     }
 
-    void add_known(const Shares& shares, const std::vector<double>& flux, Door door) {
+    void add_known(const Shares& shares, const std::vector<double>& flux, Origin origin) {
         for (std::size_t k = 0; k < flux.size(); ++k)
-            conditions_.shares.push_back({.vertex = shares.vertices[k], .door = door, .flux = flux[k] * shares.size[k]});
+            conditions_.shares.push_back({.vertex = shares.vertices[k], .origin = origin, .flux = flux[k] * shares.size[k]});
     }
 
-    void add_exchange(const Shares& shares, const HeatExchange& exchange, Door door, const std::string& key) {
+    void add_exchange(const Shares& shares, const HeatExchange& exchange, Origin origin, const std::string& key) {
         if (!exchange.coefficient && !exchange.emissivity) return;
         for (std::size_t k = 0; k < shares.vertices.size(); ++k) {
             const Vertex v = shares.vertices[k];
@@ -144,7 +138,7 @@ public:
             const double emissivity = value(exchange.emissivity, v, key + ".emissivity", 0, 1);
             const double least = exchange.emissivity ? 0 : -INFINITY;
             conditions_.shares.push_back({.vertex = v,
-                                          .door = door,
+                                          .origin = origin,
                                           .coefficient = coefficient * shares.size[k],
                                           .radiation = stefan_boltzmann * emissivity * shares.size[k],
                                           .ambient = value(exchange.ambient, v, key + ".ambient", least, INFINITY)});
@@ -182,28 +176,28 @@ HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const He
     HeatConditions conditions{sources(step, options), {}, {}};
     Boundary boundary(step, conditions);
     Array<Vertex, char> is_fixed(current.position.size(), 0);
-    const auto fix = [&](Vertex v, double value, Door door) {
-        if (std::exchange(is_fixed[v], 1) == 0) conditions.fixed.push_back({v, value, door});
+    const auto fix = [&](Vertex v, double value, Origin origin) {
+        if (std::exchange(is_fixed[v], 1) == 0) conditions.fixed.push_back({v, value, origin});
     };
 
     for (std::size_t r = 0; r < options.regions.size(); ++r) {
         if (!options.regions[r].held) continue;
         for (Vertex v : shares_of_region(current, Region(r)).vertices)
-            fix(v, *options.regions[r].held, {Door::Kind::held, r});
+            fix(v, *options.regions[r].held, {Origin::Kind::held, r});
     }
     const auto facets = facets_of_faces(current);
     for (std::size_t f = 0; f < options.faces.size(); ++f) {
         const HeatFace& face = options.faces[f];
         if (face.kind == HeatFace::Kind::insulated) continue;
         const Shares shares = shares_of_surface(current, facets[f]);
-        const Door door{Door::Kind::face, f};
+        const Origin origin{Origin::Kind::face, f};
         if (face.kind == HeatFace::Kind::value) {
             for (Vertex v : shares.vertices)
-                fix(v, value_at(face.quantity, current.position[v], step.end(), face_key(options, f) + ".value"), door);
+                fix(v, value_at(face.quantity, current.position[v], step.end(), face_key(options, f) + ".value"), origin);
         } else if (face.kind == HeatFace::Kind::flux) {
-            boundary.add_flux(shares, face.quantity, face.power, door, face_key(options, f));
+            boundary.add_flux(shares, face.quantity, face.power, origin, face_key(options, f));
         } else {
-            boundary.add_exchange(shares, face.exchange, door, face_key(options, f));
+            boundary.add_exchange(shares, face.exchange, origin, face_key(options, f));
         }
     }
     for (std::size_t body = 1; body <= options.surfaces.size(); ++body) {
@@ -212,10 +206,10 @@ HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const He
             !surface.exchange.emissivity)
             continue;
         const Shares shares = shares_of_surface(current, region_surface(current, Region(body)).interface);
-        const Door door{Door::Kind::surface, body};
-        boundary.add_flux(shares, surface.flux, surface.power, door, surface_key(options, body));
-        boundary.add_known(shares, surface.at_vertices, door);
-        boundary.add_exchange(shares, surface.exchange, door, surface_key(options, body));
+        const Origin origin{Origin::Kind::surface, body};
+        boundary.add_flux(shares, surface.flux, surface.power, origin, surface_key(options, body));
+        boundary.add_known(shares, surface.at_vertices, origin);
+        boundary.add_exchange(shares, surface.exchange, origin, surface_key(options, body));
     }
     return conditions;
 }

@@ -8,7 +8,7 @@
 namespace kropla {
 
 /// Where something acts on a region from outside.
-struct Door {
+struct Origin {
     enum class Kind { face, surface, held } kind;  // held: a region is, or begins with what it has
     std::size_t number;  // of the face, or the region
 };
@@ -16,7 +16,7 @@ struct Door {
 /// A vertex at a boundary, and what comes in or is exchanged there over its share of the area.
 struct BoundaryShare {
     Vertex vertex;
-    Door door;
+    Origin origin;
     double flux = 0;         // [W] in, in the mean over the step
     double coefficient = 0;  // [W/K]
     double radiation = 0;    // [W/K^4] the share of sigma times emissivity
@@ -31,7 +31,7 @@ struct BoundaryShare {
 struct FixedValue {
     Vertex vertex;
     double value;  // [K]
-    Door door;
+    Origin origin;
 };
 
 /// What acts on a step from outside. The same on all ranks: if a quantity is not finite, all of them throw.

@@ -2,12 +2,11 @@
 #include <kropla/simulate/heat.h>
 
 #include <kropla/base/error.h>
-#include "simulate/elements.h"
+#include "simulate/cells.h"
 #include "simulate/heat_step.h"
 #include "simulate/step_mean.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace kropla {
 namespace {

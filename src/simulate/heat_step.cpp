@@ -332,7 +332,6 @@ private:
         }
     }
 
-    /// What came in at this vertex but is not accounted for by the cells and what acts on it: what keeps it fixed [J].
     [[nodiscard]] HeatBalance balance(const Assembled& assembled) const {
         HeatBalance sum;
         sum.before = energy(step_.before, step_.options, step_.old_temperature, step_.only);
@@ -344,17 +343,15 @@ private:
         for (const BoundaryShare& share : conditions_.shares) {
             const double in = step_.dt * (share.flux - share.given(solved_[share.vertex]));
             acting[share.vertex] += in;
-            if (share.door.kind == Door::Kind::face) sum.faces[share.door.number] += in;
-            else sum.surfaces[share.door.number - 1] += in;
+            if (share.origin.kind == Origin::Kind::face) sum.faces[share.origin.number] += in;
+            else sum.surfaces[share.origin.number - 1] += in;
         }
-        for_each_cell(living_cells(step_.current, step_.only), [&](const auto& cell) {
+        for_each_share(step_.current, living_cells(step_.current, step_.only), [&](const auto& cell, Vertex v, double volume) {
             const Region region = cell_region(step_.current, cell);
-            const auto source = at_corners(conditions_.source[region], cell_vertices(step_.current, cell));
-            const auto points = cell_points(corners(step_.current, cell));
-            for (std::size_t k = 0; k < points.size(); ++k)
-                sum.sources[static_cast<std::size_t>(region.value)] += step_.dt * points[k].volume * mean_value(k, source);
+            if (const auto& source = conditions_.source[region]; !source.empty())
+                sum.sources[static_cast<std::size_t>(region.value)] += step_.dt * volume * source[v];
         });
-        std::vector<double> kept(conditions_.fixed.size(), 0.0);
+        std::vector<double> kept(conditions_.fixed.size(), 0.0);  // what the cells gained and nothing acting on it brought
         for (std::size_t k = 0; k < kept.size(); ++k) {
             const Vertex v = conditions_.fixed[k].vertex;
             const int row = pattern_.numbering.row[v] - pattern_.rows.first_row;
@@ -364,8 +361,8 @@ private:
         }
         MPI_Allreduce(MPI_IN_PLACE, kept.data(), static_cast<int>(kept.size()), MPI_DOUBLE, MPI_SUM, ranks_.communicator);
         for (std::size_t k = 0; k < kept.size(); ++k) {
-            const Door door = conditions_.fixed[k].door;
-            (door.kind == Door::Kind::face ? sum.faces[door.number] : sum.held[door.number]) += kept[k];
+            const Origin origin = conditions_.fixed[k].origin;
+            (origin.kind == Origin::Kind::face ? sum.faces[origin.number] : sum.held[origin.number]) += kept[k];
         }
         return sum;
     }
@@ -389,12 +386,6 @@ private:
     int iterations_ = 0, passes_ = 0;
     double error_ = 0;
 };
-
-std::vector<Region> regions_of(const HeatOptions& options) {
-    std::vector<Region> regions;
-    for (std::size_t r = 0; r < options.regions.size(); ++r) regions.push_back(Region(r));
-    return regions;
-}
 
 /// A time [s] after which nothing is left of how a steady state began: heat passes the domain ten million times.
 double long_enough(const Mesh& mesh, const HeatOptions& options) {
@@ -474,14 +465,9 @@ void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& option
     const Pattern pattern = make_pattern(mesh, cells, ranks);
     const std::vector<double> capacity = capacities(options);
     std::vector<double> held(pattern.numbering.vertex.size(), 0.0), values;
-    for_each_cell(cells, [&](const auto& cell) {
-        const auto vertices = cell_vertices(mesh, cell);
-        const auto points = cell_points(corners(mesh, cell));
-        const double of_region = capacity[static_cast<std::size_t>(cell_region(mesh, cell).value)];
-        for (std::size_t k = 0; k < points.size(); ++k)
-            for (std::size_t i = 0; i < vertices.size(); ++i)
-                held[static_cast<std::size_t>(pattern.numbering.row[vertices[i]])] +=
-                    of_region * points[k].volume * shape_means<vertices.size()>[k].value[i];
+    for_each_share(mesh, cells, [&](const auto& cell, Vertex v, double volume) {
+        held[static_cast<std::size_t>(pattern.numbering.row[v])] +=
+            capacity[static_cast<std::size_t>(cell_region(mesh, cell).value)] * volume;
     });
     for (Vertex v : pattern.numbering.vertex) values.push_back(temperature[v]);
     (void)repair(ranks, pattern, held, least, 1, values);
@@ -494,13 +480,12 @@ void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& optio
     HeatConditions conditions = heat_conditions(mesh, mesh, options, 0, dt, ranks.watch);
     Array<Vertex, char> known(mesh.position.size(), 0);
     for (const FixedValue& fixed : conditions.fixed) known[fixed.vertex] = 1;
-    for (Region r : regions_of(options)) {
-        if (options.regions[static_cast<std::size_t>(r.value)].initial.steady) continue;
-        for_each_cell(living_cells(mesh, r), [&](const auto& cell) {
-            for (Vertex v : cell_vertices(mesh, cell)) {
-                if (std::exchange(known[v], 1) != 0) continue;
-                conditions.fixed.push_back({v, field.values[v], {Door::Kind::held, static_cast<std::size_t>(r.value)}});
-            }
+    for (std::size_t r = 0; r < options.regions.size(); ++r) {
+        if (options.regions[r].initial.steady) continue;
+        for_each_cell(living_cells(mesh, Region(r)), [&](const auto& cell) {
+            for (Vertex v : cell_vertices(mesh, cell))
+                if (std::exchange(known[v], 1) == 0)
+                    conditions.fixed.push_back({v, field.values[v], {Origin::Kind::held, r}});
         });
     }
     HeatStep step = heat_step(mesh, mesh, options, conditions, field.values, dt);
