@@ -13,16 +13,6 @@ struct Spoiled {
     std::string_view from, to, refusal;
 };
 
-/// What is said of a text; empty if it is a right case.
-std::string refusal(const std::string& text) {
-    try {
-        (void)parse_case(text, "case.toml");
-    } catch (const CaseError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 void expect_refusals(std::initializer_list<Spoiled> all) {
     for (const Spoiled& s : all) {
         EXPECT_EQ(refusal(replaced(full_case, s.from, s.to)), "case.toml: " + std::string(s.refusal)) << s.to;

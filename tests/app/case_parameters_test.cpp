@@ -24,15 +24,6 @@ std::string with_parameters(const std::string& parameters) {
 
 const std::string parameters = "[parameters]\nspeed = 3\nd = \"2*r\"\nr = 1e-3\nn = 20\n";
 
-std::string refusal(const std::string& text) {
-    try {
-        (void)parse_case(text, "case.toml");
-    } catch (const CaseError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 /// Of a [parameters] whose first is in line 52.
 std::string refused(const std::string& lines) { return refusal(std::string(full_case) + "[parameters]\n" + lines); }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "app/case.h"
+#include <kropla/base/error.h>
+
 #include <string>
 #include <string_view>
 
@@ -63,6 +66,16 @@ seed = 9223372036854775807
 inline std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
     std::string changed(text);
     return changed.replace(changed.find(from), from.size(), to);  // throws if it is not there
+}
+
+/// What is said of a text; empty if it is a right case.
+inline std::string refusal(const std::string& text) {
+    try {
+        (void)parse_case(text, "case.toml");
+    } catch (const CaseError& error) {
+        return error.what();
+    }
+    return "";
 }
 
 }  // namespace kropla

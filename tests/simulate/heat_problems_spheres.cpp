@@ -112,6 +112,17 @@ std::vector<double> cooled_in_medium(const Ranks& ranks, const InMedium& in, con
     return found;
 }
 
+/// The temperatures at the centre and at the surface [m], at one time after the other [s], by so many steps to each.
+std::vector<double> at_centre_and_surface(StillRun& run, const Mesh& mesh, double surface, std::initializer_list<double> times,
+                                          int steps) {
+    std::vector<double> found;
+    for (double time : times) {
+        run.steps_to(time, steps);
+        for (double r : {0.0, surface}) found.push_back(mean_at_radius(mesh, run.field, r));
+    }
+    return found;
+}
+
 }  // namespace
 
 Outcome robin_sphere(const Ranks& ranks, double biot, int fineness) {
@@ -123,12 +134,7 @@ Outcome robin_sphere(const Ranks& ranks, double biot, int fineness) {
     Outcome outcome{std::to_string(shells) + " shells", richardson_of(2 * steps), {}};
     const auto solve = [&](int count) {
         StillRun run(ranks, mesh, options, outcome);
-        std::vector<double> found;
-        for (double time : {0.2, 0.5}) {
-            run.steps_to(time, count);
-            for (double r : {0.0, surface}) found.push_back(mean_at_radius(mesh, run.field, r));
-        }
-        return found;
+        return at_centre_and_surface(run, mesh, surface, {0.2, 0.5}, count);
     };
     const std::vector<double> found = richardson(solve, steps);
     outcome.reached = {{"centre, Fo 0.2 [-]", robin_exact(biot, 0, 0.2), found[0]},
@@ -148,12 +154,7 @@ Outcome heated_sphere(const Ranks& ranks, int fineness) {
     Outcome outcome{std::to_string(shells) + " shells", richardson_of(2 * steps), {}};
     const auto solve = [&](int count) {
         StillRun run(ranks, mesh, options, outcome);
-        std::vector<double> found;
-        for (double time : {0.1, 0.5}) {
-            run.steps_to(time, count);
-            for (double r : {0.0, surface}) found.push_back(mean_at_radius(mesh, run.field, r));
-        }
-        return found;
+        return at_centre_and_surface(run, mesh, surface, {0.1, 0.5}, count);
     };
     const std::vector<double> found = richardson(solve, steps);
     outcome.reached = {{"centre, Fo 0.1 [K]", flux_exact(0, 0.1), found[0], flux_exact(1, 0.1)},

@@ -162,13 +162,18 @@ Mesh unit_cube_with_body(int n) {
                      [&](int i, int j, int k) { return inside(i) && inside(j) && inside(k) ? 1 : 0; });
 }
 
-Mesh ball_of_shells(const std::vector<double>& radii, const std::function<int(int shell)>& region) {
+Place on_spheres(std::vector<double> radii) {
     const int m = static_cast<int>(radii.size()) - 1;
-    const auto place = [&](int i, int j, int k) {
+    return [radii = std::move(radii), m](int i, int j, int k) {
         const Vec3 p{1.0 * (i - m), 1.0 * (j - m), 1.0 * (k - m)};
         const int shell = std::max({std::abs(i - m), std::abs(j - m), std::abs(k - m)});
         return shell == 0 ? Vec3{} : radii[static_cast<std::size_t>(shell)] * normalised(p);
     };
+}
+
+Mesh ball_of_shells(const std::vector<double>& radii, const std::function<int(int shell)>& region) {
+    const int m = static_cast<int>(radii.size()) - 1;
+    const Place place = on_spheres(radii);
     const auto ring = [m](int i) { return i < m ? m - 1 - i : i - m; };
     return cube_grid(2 * m, 2 * m, 2 * m, place, [&](int i, int j, int k) {
         return region(std::max({ring(i), ring(j), ring(k)}));

@@ -22,6 +22,10 @@ Mesh cube_grid(int nx, int ny, int nz, const Place& place, const RegionOfCube& r
 Mesh unit_cube(int n);
 Mesh unit_cube_with_body(int n);
 
+/// Shell m of the grid, counted from its middle, on the sphere of radii[m]; the middle is where there are as many steps
+/// before as radii but one.
+Place on_spheres(std::vector<double> radii);
+
 /// A ball: cubes within the grid's shell m are taken to the sphere of radii[m]; regions by shell (-1:
 /// hollow).
 Mesh ball_of_shells(const std::vector<double>& radii, const std::function<int(int shell)>& region);

@@ -46,12 +46,7 @@ double solid_volume(const Mesh& mesh, const NodalField& temperature, double soli
 
 Mesh eighth_of_ball(const std::vector<double>& radii, const std::function<int(int shell)>& region) {
     const int m = static_cast<int>(radii.size()) - 1;
-    const auto place = [&](int i, int j, int k) {
-        const Vec3 p{1.0 * (i - m), 1.0 * (j - m), 1.0 * (k - m)};
-        const int shell = std::max({std::abs(i - m), std::abs(j - m), std::abs(k - m)});
-        return shell == 0 ? Vec3{} : radii[static_cast<std::size_t>(shell)] * normalised(p);
-    };
-    return cube_grid(2 * m, 2 * m, 2 * m, place, [&](int i, int j, int k) {
+    return cube_grid(2 * m, 2 * m, 2 * m, on_spheres(radii), [&](int i, int j, int k) {
         return std::min({i, j, k}) < m ? -1 : region(std::max({i, j, k}) - m);
     });
 }
