@@ -20,6 +20,7 @@ const ProgressRow row{.step = 12,
                       .touched_fraction = 0.073,
                       .mesh_seconds = 0.08,
                       .heat_seconds = 0.12,
+                      .temperatures = {},
                       .seconds_left = 7.6};
 
 TEST(Progress, SaysWhatAStepDid) {

@@ -58,8 +58,11 @@ TEST(StepRow, HasTheFiguresOfTheStep) {
     report.mesh.changes.swaps = 13;
     report.mesh.contents = {{.before_transfer = 4, .after = -5, .by_transfer = 1}};
     report.mesh.transfer = {{.limited = 6, .beyond = 7}};
-    report.heat.surfaces = {{.body = Region(1), .total = -7}};
-    report.heat.balance = {.before = 1, .after = 4, .faces = {0, 0, 0, 0, 0, 2}, .sources = {0.25, 0.5}};
+    report.heat.surfaces = {{.body = Region(1), .total = -7, .vertices = {}, .density = {}}};
+    report.heat.balance.before = 1;
+    report.heat.balance.after = 4;
+    report.heat.balance.faces = {0, 0, 0, 0, 0, 2};
+    report.heat.balance.sources = {0.25, 0.5};
     report.bodies = {{.place = {1, 2, 3}, .mean = 300}};
     report.velocities = {{4, 5, 6}};
     const StepRow row = step_row(3, report, {}, {.tets = 8, .worst = {}}, it);
