@@ -38,16 +38,6 @@ VolumeGradients<n> mean_over_step(const Corners<n>& x0, const Corners<n>& x1) {
 
 }  // namespace
 
-CellPoint<4> linear_tet(const Corners<4>& x) {
-    const Vec3 a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
-    const Vec3 g1 = cross(b, c) / 6, g2 = cross(c, a) / 6, g3 = cross(a, b) / 6;
-    return {determinant(a, b, c) / 6, {-(g1 + g2 + g3), g1, g2, g3}};
-}
-
-CellPoints<4> cell_points(const Corners<4>& x) {
-    return {linear_tet(x)};
-}
-
 CellPoints<6> cell_points(const Corners<6>& x) {
     constexpr double weight = 1.0 / 12;  // the reference prism has volume one half
     CellPoints<6> points;

@@ -44,13 +44,17 @@ struct CellPoint {
 template <std::size_t n>
 using CellPoints = std::array<CellPoint<n>, points_of_cell<n>>;
 
-/// In terms of differences to corner 0 alone, so that the rounding error is relative to the cell's size.
-[[nodiscard]] CellPoints<4> cell_points(const Corners<4>& x);
-[[nodiscard]] CellPoints<6> cell_points(const Corners<6>& x);
+/// The only point of a tet: its volume and dV/dx_i, a third of the area vector of the facet opposite corner i, pointing to
+/// that corner; from differences to corner 0 alone, so that the rounding error is relative to the cell's size.
+[[nodiscard]] inline CellPoint<4> linear_tet(const Corners<4>& x) {
+    constexpr double sixth = 1.0 / 6;
+    const Vec3 a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
+    const Vec3 g1 = sixth * cross(b, c), g2 = sixth * cross(c, a), g3 = sixth * cross(a, b);
+    return {dot(a, g1), {-(g1 + g2 + g3), g1, g2, g3}};
+}
 
-/// The only point of a tet: its volume and dV/dx_i, a third of the area vector of the facet opposite corner
-/// i, pointing to that corner.
-[[nodiscard]] CellPoint<4> linear_tet(const Corners<4>& x);
+[[nodiscard]] inline CellPoints<4> cell_points(const Corners<4>& x) { return {linear_tet(x)}; }
+[[nodiscard]] CellPoints<6> cell_points(const Corners<6>& x);
 
 template <std::size_t n>
 [[nodiscard]] double total_volume(const CellPoints<n>& points) {
@@ -140,6 +144,15 @@ void for_each_share(const Mesh& mesh, const Cells& cells, const Visit& visit) {
             visit(cell, vertices[i], share);
         }
     });
+}
+
+/// The mean, for point k, of phi_i times what has these values at the corners.
+template <std::size_t n, class T>
+[[nodiscard]] T mean_product(std::size_t k, std::size_t i, const std::array<T, n>& values) {
+    if constexpr (n == 4) return 0.05 * (values[0] + values[1] + values[2] + values[3] + values[i]);
+    T sum = {};
+    for (std::size_t j = 0; j < n; ++j) sum += shape_means<n>[k].product[i][j] * values[j];
+    return sum;
 }
 
 /// The mean, for point k, of what has these values at the corners.

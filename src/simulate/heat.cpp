@@ -134,7 +134,11 @@ double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, 
     for_each_cell(living_cells(mesh, only), [&](const auto& cell) {
         const Enthalpy& h = curve[cell_region(mesh, cell)];
         auto values = at_corners(temperature, cell_vertices(mesh, cell));
-        for (double& value : values) value = h(value);
+        if (h.proportional()) {
+            for (const double slope = h.slope(0); double& value : values) value *= slope;
+        } else {
+            for (double& value : values) value = h(value);
+        }
         const auto points = cell_points(corners(mesh, cell));
         for (std::size_t k = 0; k < points.size(); ++k) sum += points[k].volume * mean_value(k, values);
     });

@@ -86,10 +86,7 @@ void add_mass(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& system)
         const ShapeMeans<n>& means = shape_means<n>[k];
         const double now = cell.now[k].volume, gained = now - cell.before[k].volume;
         for (std::size_t i = 0; i < n; ++i) {
-            double old_product = 0;
-            if (cell.low) old_product = means.value[i] * cell.old[i];
-            else
-                for (std::size_t j = 0; j < n; ++j) old_product += means.product[i][j] * cell.old[j];
+            const double old_product = cell.low ? means.value[i] * cell.old[i] : mean_product(k, i, cell.old);
             const double lumped = now * means.value[i];
             carrying.row_sum[i] += lumped;
             system.held[i] += cell.slope[i] * lumped;
@@ -104,9 +101,13 @@ template <std::size_t n>
 void add_conduction(const Cell<n>& cell, CellSystem<n>& system) {
     for (const CellPoint<n>& point : cell.now) {
         const double conducted = cell.dt * cell.conductivity / point.volume;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t j = 0; j < n; ++j)
-                system.matrix[i][j] += conducted * dot(point.volume_gradient[i], point.volume_gradient[j]);
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const double exchanged = conducted * dot(point.volume_gradient[i], point.volume_gradient[j]);
+                system.matrix[i][j] += exchanged;
+                system.matrix[j][i] += exchanged;
+            }
+        }
     }
 }
 
@@ -141,13 +142,15 @@ void add_upwinding(const Cell<n>& cell, const std::array<Vec3, n>& mean_gradient
         const CellPoint<n>& point = cell.now[k];
         std::array<double, n> along;  // the point's volume times v.grad phi_i [m^3/s]
         for (std::size_t i = 0; i < n; ++i) along[i] = dot(v, point.volume_gradient[i]);
+        std::array<double, n> means;  // of what j brings: phi_j and, over the step, v.grad phi_j
+        for (std::size_t j = 0; j < n; ++j)
+            means[j] = shape_means<n>[k].value[j] + cell.dt / point.volume * along[j];
         const double known = mean_value(k, cell.old) + cell.dt * mean_value(k, cell.source);
         for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t j = 0; j < n; ++j)
-                carrying.matrix[i][j] +=
-                    tau * along[i] * (shape_means<n>[k].value[j] + cell.dt * along[j] / point.volume);
-            carrying.row_sum[i] += tau * along[i];  // the components sum to zero
-            system.right[i] += tau * along[i] * known;
+            const double weight = tau * along[i];
+            for (std::size_t j = 0; j < n; ++j) carrying.matrix[i][j] += weight * means[j];
+            carrying.row_sum[i] += weight;  // the components sum to zero
+            system.right[i] += weight * known;
         }
     }
 }
@@ -167,18 +170,16 @@ void add_convection(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& s
         const Vec3 flown = cell.dt * gradient(point, cell.potential);
         const Vec3 mean_moved = mean_value(k, moved);
         past += point.volume * (flown - mean_moved);
+        std::array<double, n> by_flow;
         for (std::size_t i = 0; i < n; ++i) {
-            const double by_flow = dot(flown, point.volume_gradient[i]);
-            carrying.row_sum[i] -= by_flow - dot(mean_moved, mean_volume_gradient[k][i]);
+            by_flow[i] = dot(flown, point.volume_gradient[i]);
+            carrying.row_sum[i] -= by_flow[i] - dot(mean_moved, mean_volume_gradient[k][i]);
         }
         for (std::size_t j = 0; j < n; ++j) {
-            Vec3 product;  // the mean of phi_j dt w
-            for (std::size_t i = 0; i < n; ++i) product += means.product[j][i] * moved[i];
+            const Vec3 product = mean_product(k, j, moved);
             lumped[j] += point.volume * (means.value[j] * moved[j] - product);
-            for (std::size_t i = 0; i < n; ++i) {
-                const double by_flow = means.value[j] * dot(flown, point.volume_gradient[i]);
-                carrying.matrix[i][j] -= by_flow - dot(product, mean_volume_gradient[k][i]);
-            }
+            for (std::size_t i = 0; i < n; ++i)
+                carrying.matrix[i][j] -= means.value[j] * by_flow[i] - dot(product, mean_volume_gradient[k][i]);
         }
     }
     if (cell.low) return;

@@ -27,6 +27,8 @@ constexpr int most_lowerings = 8;  // looks at bounds, before all is of low orde
 constexpr double noticeable = 1e-3;  // [-] of the range: a new extremum that is worth a second solution
 constexpr double of_range = 1e-11;   // [-] of the range, and
 constexpr double of_largest = 1e-12; // [-] of the largest temperature: what a solution leaves
+constexpr double exact = 1e-13;         // [-] the solver's tolerance, and
+constexpr double enough_to_look = 1e-8;  // [-] where a new extremum of a noticeable share is all that is looked for
 constexpr double settled = 1e-12;  // [-] of the largest temperature: a pass that changes less is the last
 
 Array<Region, Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& current, const HeatOptions& options) {
@@ -79,7 +81,8 @@ public:
     HeatSolution(const Ranks& ranks, HeatStep& step, const HeatConditions& conditions)
         : ranks_(ranks), step_(step), conditions_(conditions),
           pattern_(make_pattern(step.current, living_cells(step.current, step.only), ranks)), after_(step.old_temperature),
-          marked_(vertices().size(), 0), allowance_(pattern_.rows.count()), linear_(is_linear()) {
+          marked_(vertices().size(), 0), system_(pattern_.rows), solver_(ranks, pattern_.rows),
+          allowance_(pattern_.rows.count()), linear_(is_linear()) {
         for (const FixedValue& fixed : conditions.fixed) after_[fixed.vertex] = fixed.value;
         fill_old_enthalpies();
     }
@@ -92,6 +95,7 @@ public:
             if (looks == most_lowerings) std::ranges::fill(marked_, 1);
             lower_marked();
         }
+        if (linear_) solve_to(exact);
         solved_ = after_;
         exchanged_.assign(pattern_.rows.column.size(), 0.0);
         if (!linear_) return;
@@ -197,13 +201,17 @@ private:
     double solve_once() {
         ask_cells(pattern_.cells, [&](const auto& cell) { return cell_system(step_, cell); },
                   [&](const auto& cell) { return !linear_ || systems_are_to_change(cell); }, systems_, ranks_.watch);
-        const LinearSystem system = assembled();
+        assemble();
         heed(ranks_);  // a rank that was stopped in there is met before anything is done together
-        const SolverChoice choice{.name = step_.options.key, .preconditioner = preconditioner_for(ranks_, system)};
-        const Solution solution = solve(ranks_, system, choice);
+        solver_.take(system_, {.name = step_.options.key, .preconditioner = preconditioner_for(ranks_, system_)});
+        ++passes_;
+        return solve_to(linear_ ? enough_to_look : exact);
+    }
+
+    double solve_to(double tolerance) {
+        const Solution solution = solver_.solve(tolerance);
         iterations_ = std::max(iterations_, solution.iterations);
         error_ = solution.error;
-        ++passes_;
         return take(solution.value);
     }
 
@@ -274,8 +282,9 @@ private:
         return nearest;
     }
 
-    [[nodiscard]] LinearSystem assembled() {
-        LinearSystem system(pattern_.rows);
+    void assemble() {
+        LinearSystem& system = system_;
+        system.clear();
         add_cells(pattern_, systems_, system);
         note_capacities(system);
         diffusion_ = add_diffusion(pattern_, systems_, marked_, system);
@@ -288,7 +297,6 @@ private:
             if (system.owns(row)) allowance_.fixed[system.local(row)] = 1;
             fix_unknown(system, row, fixed.value);
         }
-        return system;
     }
 
     /// What each row of all ranks holds per kelvin, but for those that are fixed.
@@ -346,11 +354,8 @@ private:
             if (share.origin.kind == Origin::Kind::face) sum.faces[share.origin.number] += in;
             else sum.surfaces[share.origin.number - 1] += in;
         }
-        for_each_share(step_.current, living_cells(step_.current, step_.only), [&](const auto& cell, Vertex v, double volume) {
-            const Region region = cell_region(step_.current, cell);
-            if (const auto& source = conditions_.source[region]; !source.empty())
-                sum.sources[static_cast<std::size_t>(region.value)] += step_.dt * volume * source[v];
-        });
+        const auto anything = [](const auto& source) { return !source.empty(); };
+        if (std::any_of(conditions_.source.begin(), conditions_.source.end(), anything)) sum.sources = sources();
         std::vector<double> kept(conditions_.fixed.size(), 0.0);  // what the cells gained and nothing acting on it brought
         for (std::size_t k = 0; k < kept.size(); ++k) {
             const Vertex v = conditions_.fixed[k].vertex;
@@ -367,6 +372,16 @@ private:
         return sum;
     }
 
+    [[nodiscard]] std::vector<double> sources() const {
+        std::vector<double> sum(step_.options.regions.size(), 0.0);
+        for_each_share(step_.current, living_cells(step_.current, step_.only), [&](const auto& cell, Vertex v, double volume) {
+            const Region region = cell_region(step_.current, cell);
+            if (const auto& source = conditions_.source[region]; !source.empty())
+                sum[static_cast<std::size_t>(region.value)] += step_.dt * volume * source[v];
+        });
+        return sum;
+    }
+
     const Ranks& ranks_;
     HeatStep& step_;
     const HeatConditions& conditions_;
@@ -376,6 +391,8 @@ private:
     std::vector<char> marked_;    // rows of low order
     Array<Vertex, char> fresh_;   // that became so last; empty: none has
     CellSystems systems_;
+    LinearSystem system_;
+    Solver solver_;
     std::vector<double> diffusion_;  // along each coupling of the rank's rows
     std::vector<double> exchanged_;  // along it, by repair [J]
     std::vector<double> capacity_;   // of each row of all ranks [J/K]

@@ -5,8 +5,14 @@
 
 namespace kropla {
 
-LinearSystem::LinearSystem(const SparseRows& sparse_rows) : rows(sparse_rows), value(sparse_rows.column.size(), 0.0) {
+LinearSystem::LinearSystem(const SparseRows& sparse_rows) : rows(sparse_rows) {
+    clear();
+}
+
+void LinearSystem::clear() {
+    value.assign(rows.column.size(), 0.0);
     for (auto* per_row : {&row_sum, &right, &guess, &negligible, &held}) per_row->assign(rows.count(), 0.0);
+    closed = true;
 }
 
 double row_size(const LinearSystem& system, std::size_t owned_row) {

@@ -35,6 +35,7 @@ struct LinearSystem {
     bool closed = true;                // no unknown is fixed, of any rank
 
     explicit LinearSystem(const SparseRows& sparse_rows);  // of zeros
+    void clear();                                          // of zeros again
 
     [[nodiscard]] int count() const { return static_cast<int>(right.size()); }
     [[nodiscard]] bool owns(int row) const { return row >= rows.first_row && row < rows.first_row + count(); }

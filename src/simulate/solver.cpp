@@ -95,47 +95,54 @@ std::vector<double> row_scales(const Ranks& ranks, const LinearSystem& system, b
     return scale;
 }
 
-OwnedMat make_matrix(const Ranks& ranks, const LinearSystem& system, const std::vector<double>& scale,
-                     PetscInt all_rows) {
-    std::vector<double> scaled(system.value.size());
-    for (std::size_t r = 0; r < scale.size(); ++r) {
-        double diagonal = system.row_sum[r];
-        std::size_t own = 0;
-        for (PetscInt k = system.rows.begin[r]; k < system.rows.begin[r + 1]; ++k) {
-            const auto place = static_cast<std::size_t>(k);
-            if (system.rows.column[place] == system.rows.first_row + static_cast<PetscInt>(r)) {
-                own = place;
-            } else {
-                diagonal -= system.value[place];
-                scaled[place] = system.value[place] / scale[r];
-            }
+/// PETSc's matrix of a pattern, with the values of one system after the other.
+class Matrix {
+public:
+    Matrix(const Ranks& ranks, const SparseRows& rows, PetscInt all_rows) : rows_(rows), value_(rows.column.size(), 0.0) {
+        const auto count = static_cast<PetscInt>(rows.count());
+        auto *begin = const_cast<PetscInt*>(rows.begin.data()), *column = const_cast<PetscInt*>(rows.column.data());
+        Mat matrix = nullptr;
+        if (ranks.count == 1) {  // of the arrays as they are, which PETSc does not change
+            check(MatCreateSeqAIJWithArrays(ranks.communicator, count, count, begin, column, value_.data(), &matrix));
+        } else {
+            check(MatCreateMPIAIJWithArrays(ranks.communicator, count, count, all_rows, all_rows, begin, column,
+                                            value_.data(), &matrix));
+            copies_ = true;
         }
-        scaled[own] = diagonal / scale[r];
+        matrix_.reset(matrix);
     }
-    Mat matrix = nullptr;
-    check(MatCreate(ranks.communicator, &matrix));
-    OwnedMat owned(matrix);
-    check(MatSetSizes(matrix, system.count(), system.count(), all_rows, all_rows));
-    check(MatSetType(matrix, MATAIJ));
-    const PetscInt *begin = system.rows.begin.data(), *column = system.rows.column.data();
-    check(MatSeqAIJSetPreallocationCSR(matrix, begin, column, scaled.data()));
-    check(MatMPIAIJSetPreallocationCSR(matrix, begin, column, scaled.data()));
-    return owned;
-}
 
-/// The unknown as a sum of two: differences of neighbours are finer than the unknown's own rounding.
-struct Unknown {
-    std::vector<double> high, low;  // per global row
+    /// Its rows, each divided by its scale.
+    void take(const LinearSystem& system, const std::vector<double>& scale) {
+        for (std::size_t r = 0; r < scale.size(); ++r) {
+            double diagonal = system.row_sum[r];
+            std::size_t own = 0;
+            for (PetscInt k = rows_.begin[r]; k < rows_.begin[r + 1]; ++k) {
+                const auto place = static_cast<std::size_t>(k);
+                if (rows_.column[place] == rows_.first_row + static_cast<PetscInt>(r)) {
+                    own = place;
+                } else {
+                    diagonal -= system.value[place];
+                    value_[place] = system.value[place] / scale[r];
+                }
+            }
+            value_[own] = diagonal / scale[r];
+        }
+        if (copies_) {
+            check(MatUpdateMPIAIJWithArray(matrix_.get(), value_.data()));
+        } else {
+            double* changed = value_.data();
+            check(MatSeqAIJRestoreArray(matrix_.get(), &changed));  // which tells PETSc so
+        }
+    }
 
-    void add(std::size_t r, double value) {
-        const double sum = high[r] + value, part = sum - high[r];
-        low[r] += (high[r] - (sum - part)) + (value - part);  // what rounding took [Knuth, TAOCP 2, 4.2.2]
-        high[r] = sum;
-    }
-    [[nodiscard]] double value(std::size_t r) const { return high[r] + low[r]; }
-    [[nodiscard]] double difference(std::size_t j, std::size_t i) const {
-        return (high[j] - high[i]) + (low[j] - low[i]);
-    }
+    [[nodiscard]] Mat get() const { return matrix_.get(); }
+
+private:
+    const SparseRows& rows_;
+    std::vector<double> value_;
+    bool copies_ = false;
+    OwnedMat matrix_;  // refers to the values: is destroyed before them
 };
 
 double largest_size(const std::vector<double>& values) {
@@ -150,7 +157,7 @@ struct Residual {
     double backward_error;     // [-] over all ranks
 };
 
-Residual residual(const Ranks& ranks, const LinearSystem& system, const Unknown& x) {
+Residual residual(const Ranks& ranks, const LinearSystem& system, const DoubledUnknown& x) {
     const double most = largest_size(x.high);
     double error = 0, most_left = 0;
     std::vector<double> rest(system.right.size());
@@ -193,31 +200,53 @@ bool loses_constants(const Ranks& ranks, const LinearSystem& system) {
     return total(ranks, system.row_sum) < hardly_held * total(ranks, size) && system.closed;
 }
 
-/// PETSc's solver for one system, and whether its tolerance is the user's.
+/// How rows are scaled and constants are treated: what is fixed when a solver is made.
+struct Treatment {
+    Preconditioner preconditioner;
+    bool alike;             // rows are divided by the same
+    bool without_constants;
+    bool operator==(const Treatment&) const = default;
+};
+
+Treatment treatment(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice) {
+    return {choice.preconditioner, choice.potential || choice.preconditioner == Preconditioner::multigrid,
+            choice.potential || loses_constants(ranks, system)};
+}
+
+}  // namespace
+
+/// PETSc's solver for systems of one pattern, and whether its tolerance is the user's.
 class Krylov {
 public:
-    Krylov(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice)
-        : scale_(row_scales(ranks, system,
-                            choice.potential || choice.preconditioner == Preconditioner::multigrid)),
-          right_(make_vector(ranks, scale_.size())),
-          unknown_(make_vector(ranks, scale_.size())),
-          gathering_(unknown_.get()) {
-        PetscInt all_rows = 0;
-        check(VecGetSize(right_.get(), &all_rows));
-        matrix_ = make_matrix(ranks, system, scale_, all_rows);
+    Krylov(const Ranks& ranks, const SparseRows& rows, const Treatment& treatment, const SolverChoice& choice)
+        : treatment_(treatment),
+          right_(make_vector(ranks, rows.count())),
+          unknown_(make_vector(ranks, rows.count())),
+          gathering_(unknown_.get()),
+          matrix_(ranks, rows, all_rows()) {
         KSP solver = nullptr;
         check(KSPCreate(ranks.communicator, &solver));
         solver_.reset(solver);
         check(KSPSetOptionsPrefix(solver, choice.prefix.c_str()));
         if (choice.potential) check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
-        if (choice.potential || loses_constants(ranks, system)) leave_constants_out(ranks);
-        else check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));
         set_defaults(choice);
+        check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));
         check(KSPSetFromOptions(solver));
         listen_on_the_way(solver, ranks);
         double rtol = 0, atol = 0;
-        check(KSPGetTolerances(solver, &rtol, &atol, nullptr, &iterations_left_));
+        check(KSPGetTolerances(solver, &rtol, &atol, nullptr, &most_));
         users_tolerance_ = rtol != deepest_pass || atol != 0;
+    }
+
+    [[nodiscard]] bool treats(const Treatment& treatment) const { return treatment == treatment_; }
+
+    /// Takes the values of a system of the pattern.
+    void take(const Ranks& ranks, const LinearSystem& system) {
+        scale_ = row_scales(ranks, system, treatment_.alike);
+        matrix_.take(system, scale_);
+        if (treatment_.without_constants) leave_constants_out(ranks);
+        iterations_ = 0;
+        iterations_left_ = most_;
     }
 
     [[nodiscard]] bool users_tolerance() const { return users_tolerance_; }
@@ -252,6 +281,12 @@ public:
     [[nodiscard]] bool out_of_iterations() const { return iterations_left_ == 0; }
 
 private:
+    [[nodiscard]] PetscInt all_rows() const {
+        PetscInt size = 0;
+        check(VecGetSize(right_.get(), &size));
+        return size;
+    }
+
     /// Constants are taken out of every residual; the preconditioner is that of a matrix that is not singular.
     void leave_constants_out(const Ranks& ranks) {
         MatNullSpace space = nullptr;
@@ -296,24 +331,31 @@ private:
              {"agg_nl", fast},
              {"relax_type_down", "SOR/Jacobi"},  // one sweep each way, symmetric together
              {"relax_type_up", "backward-SOR/Jacobi"}}};
-        for (const auto& [name, value] : defaults) {
-            const std::string option = "-" + choice.prefix + "pc_hypre_boomeramg_" + name;
-            PetscBool given = PETSC_FALSE;
-            check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
-            if (!given) check(PetscOptionsSetValue(nullptr, option.c_str(), value));
-        }
+        for (const auto& [name, value] : defaults)
+            set_unless_given(choice, std::string("pc_hypre_boomeramg_") + name, value);
     }
 
+    static void set_unless_given(const SolverChoice& choice, const std::string& name, const char* value) {
+        const std::string option = "-" + choice.prefix + name;
+        PetscBool given = PETSC_FALSE;
+        check(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &given));
+        if (!given) check(PetscOptionsSetValue(nullptr, option.c_str(), value));
+    }
+
+    Treatment treatment_;
     std::vector<double> scale_;
     OwnedVec right_, unknown_;
     Gathering gathering_;
-    OwnedMat matrix_, regular_;
+    Matrix matrix_;
+    OwnedMat regular_;
     OwnedNullSpace constants_;
     OwnedKsp solver_;
-    PetscInt iterations_left_ = most_iterations;
+    PetscInt most_ = most_iterations, iterations_left_ = most_iterations;
     int iterations_ = 0;
     bool users_tolerance_ = false;
 };
+
+namespace {
 
 [[noreturn]] void give_up(const SolverChoice& choice, const Krylov& krylov, double backward_error) {
     std::ostringstream message;
@@ -323,7 +365,7 @@ private:
 }
 
 /// Where no unknown is fixed, the sum of all equations says what constant is missing in x.
-void balance(const Ranks& ranks, const LinearSystem& system, Unknown& x, Residual& left) {
+void balance(const Ranks& ranks, const LinearSystem& system, DoubledUnknown& x, Residual& left) {
     const double held = total(ranks, system.row_sum);
     if (!system.closed || !(held > 0)) return;
     const double missing = total(ranks, left.rest) / held;
@@ -352,14 +394,24 @@ SparseRows chain() {
 
 }  // namespace
 
-Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice) {
-    heed(ranks);
-    Unknown x{everywhere(ranks, system.guess), {}};
-    x.low.assign(x.high.size(), 0.0);
-    const double wanted = std::max(choice.tolerance, reachable(ranks, system));
-    Residual left = residual(ranks, system, x);
-    if (!choice.potential) balance(ranks, system, x, left);
-    Krylov krylov(ranks, system, choice);
+Solver::Solver(const Ranks& ranks, const SparseRows& rows) : ranks_(ranks), rows_(rows) {}
+Solver::~Solver() = default;
+
+void Solver::take(const LinearSystem& system, const SolverChoice& choice) {
+    heed(ranks_);
+    system_ = &system;
+    choice_ = choice;
+    x_ = {everywhere(ranks_, system.guess), {}};
+    x_.low.assign(x_.high.size(), 0.0);
+    const Treatment needed = treatment(ranks_, system, choice);
+    if (!krylov_ || !krylov_->treats(needed)) krylov_ = std::make_unique<Krylov>(ranks_, rows_, needed, choice);
+    krylov_->take(ranks_, system);
+}
+
+Solution Solver::solve(double tolerance) {
+    const double wanted = std::max(tolerance, reachable(ranks_, *system_));
+    Residual left = residual(ranks_, *system_, x_);
+    if (!choice_.potential) balance(ranks_, *system_, x_, left);
     double corrected = INFINITY;     // [-] of the largest entry, by the last pass
     bool as_deep_as_can_be = false;  // a pass got nowhere: the norm that it aims at does not see what is left
     while (left.backward_error > wanted) {
@@ -367,26 +419,36 @@ Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoic
         const double aim = as_deep_as_can_be ? deepest_pass
                                              : std::clamp(pass_margin * wanted / before.backward_error, deepest_pass,
                                                           pass_margin);
-        const std::vector<double> correction = krylov.correct(before.rest, aim);
-        heed(ranks);
-        for (std::size_t r = 0; r < correction.size(); ++r) x.add(r, correction[r]);
-        left = residual(ranks, system, x);
-        if (krylov.users_tolerance()) {
-            if (krylov.reason() <= 0) give_up(choice, krylov, left.backward_error);
+        const std::vector<double> correction = krylov_->correct(before.rest, aim);
+        heed(ranks_);
+        for (std::size_t r = 0; r < correction.size(); ++r) x_.add(r, correction[r]);
+        left = residual(ranks_, *system_, x_);
+        if (krylov_->users_tolerance()) {
+            if (krylov_->reason() <= 0) give_up(choice_, *krylov_, left.backward_error);
             break;
         }
-        if (!choice.potential) {
-            balance(ranks, system, x, left);
-            corrected = largest_size(correction) / largest_size(x.high);
+        if (!choice_.potential) {
+            balance(ranks_, *system_, x_, left);
+            corrected = largest_size(correction) / largest_size(x_.high);
             if (corrected < rounding) break;
         }
-        if (left.backward_error <= wanted || !(stuck(before, left) || krylov.out_of_iterations())) continue;
-        if (as_deep_as_can_be || krylov.out_of_iterations()) give_up(choice, krylov, left.backward_error);
+        if (left.backward_error <= wanted || !(stuck(before, left) || krylov_->out_of_iterations())) continue;
+        if (as_deep_as_can_be || krylov_->out_of_iterations()) give_up(choice_, *krylov_, left.backward_error);
         as_deep_as_can_be = true;
     }
-    std::vector<double> value(x.high.size());
-    for (std::size_t r = 0; r < value.size(); ++r) value[r] = x.value(r);
-    return {std::move(value), krylov.iterations(), std::min(left.backward_error, corrected)};
+    std::vector<double> value(x_.high.size());
+    for (std::size_t r = 0; r < value.size(); ++r) value[r] = x_.value(r);
+    return {std::move(value), krylov_->iterations(), std::min(left.backward_error, corrected)};
+}
+
+void Solver::set_up() {
+    krylov_->set_up();
+}
+
+Solution solve(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice) {
+    Solver solver(ranks, system.rows);
+    solver.take(system, choice);
+    return solver.solve(choice.tolerance);
 }
 
 void rehearse(const Ranks& ranks) {
@@ -394,10 +456,14 @@ void rehearse(const Ranks& ranks) {
     LinearSystem system(rows);
     std::ranges::fill(system.value, -1.0);
     std::ranges::fill(system.row_sum, 0.1);
+    const auto try_out = [&](const SolverChoice& choice) {
+        Solver solver(ranks, rows);
+        solver.take(system, choice);
+        solver.set_up();
+    };
     for (Preconditioner preconditioner : {Preconditioner::factors, Preconditioner::multigrid})
-        Krylov(ranks, system, {.name = "", .preconditioner = preconditioner}).set_up();
-    Krylov(ranks, system, {.name = "", .prefix = "potential_", .preconditioner = Preconditioner::multigrid,
-                           .potential = true}).set_up();
+        try_out({.name = "", .preconditioner = preconditioner});
+    try_out({.name = "", .prefix = "potential_", .preconditioner = Preconditioner::multigrid, .potential = true});
 }
 
 Preconditioner preconditioner_for(const Ranks& ranks, const LinearSystem& system) {
