@@ -111,6 +111,8 @@ private:
     }
 
     Answer solve(const StepToSolve& step) {
+        if (!it_.heat && it_.species.empty()) return Solved{};
+        flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt);
         if (it_.heat) solve_heat(step);
         for (std::size_t s = 0; s < it_.species.size(); ++s) solve_species(step, s);
         return Solved{};
@@ -119,7 +121,7 @@ private:
     void solve_heat(const StepToSolve& step) {
         if (!enthalpy_.empty()) temperature_of(step.before, *it_.heat, enthalpy_, temperature());
         HeatReport heat =
-            step_heat(ranks_, step.before, step.current, *it_.heat, state_.fields.front(), step.time, step.dt);
+            step_heat(ranks_, step.before, step.current, *it_.heat, flow_, state_.fields.front(), step.time, step.dt);
         if (!enthalpy_.empty()) take_enthalpies(step.current);
         report.warnings = beyond_tables(*it_.heat, step.current, temperature(), step.time + step.dt);
         report.heat = std::move(heat);
@@ -128,8 +130,8 @@ private:
     void solve_species(const StepToSolve& step, std::size_t s) {
         Concentrations values = concentrations(it_, s, state_.fields);
         report.species.resize(it_.species.size());
-        report.species[s] = step_species(ranks_, step.before, step.current, it_.species[s], materials(), report.heat.surfaces,
-                                         values, step.time, step.dt);
+        report.species[s] = step_species(ranks_, step.before, step.current, it_.species[s], materials(), flow_,
+                                         report.heat.surfaces, values, step.time, step.dt);
         for (const SpeciesField& field : species_fields(it_))
             if (field.species == s) state_.fields[field.place].values = std::move(values[field.region]);
     }
@@ -149,6 +151,7 @@ private:
     const Case& it_;
     const Ranks& ranks_;
     Fields fields_;
+    MaterialFlow flow_;
     std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor
 };
 

@@ -59,6 +59,19 @@ std::size_t count_regions(const Mesh& mesh) {
     return static_cast<std::size_t>(last.value + 1);
 }
 
+FaceFacets facets_of_faces(const Mesh& mesh, Region only) {
+    FaceFacets facets;
+    for (Tet t : living_cells(mesh, only).tets) {
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Patch patch = mesh.patch[t][corner];
+            if (!patch.exists() || mesh.neighbour[t][corner].exists()) continue;
+            if (const auto face = static_cast<std::size_t>(patch.value); face < facets.size())
+                facets[face].push_back(facet_of(mesh, t, corner));
+        }
+    }
+    return facets;
+}
+
 RegionSurface region_surface(const Mesh& mesh, Region region) {
     RegionSurface surface;
     for (Tet t : living_cells(mesh, region).tets) {

@@ -38,10 +38,9 @@ void for_each_cell(const Cells& cells, const Visit& visit) {
 [[nodiscard]] std::size_t count_regions(const Mesh& mesh);
 
 /// Values at the vertices of a cell; zeros if there are none.
-template <std::size_t n>
-[[nodiscard]] std::array<double, n> at_corners(const Array<Vertex, double>& values,
-                                               const std::array<Vertex, n>& vertices) {
-    std::array<double, n> at = {};
+template <std::size_t n, class T>
+[[nodiscard]] std::array<T, n> at_corners(const Array<Vertex, T>& values, const std::array<Vertex, n>& vertices) {
+    std::array<T, n> at = {};
     for (std::size_t i = 0; i < n && !values.empty(); ++i) at[i] = values[vertices[i]];
     return at;
 }
@@ -52,5 +51,15 @@ struct RegionSurface {
     std::vector<std::array<Vertex, 3>> outer;      // of the domain
 };
 [[nodiscard]] RegionSurface region_surface(const Mesh& mesh, Region region);
+
+/// The facets of cells (of a region, if one is named) on each face of the box, with their normal (right hand) out of it.
+using FaceFacets = std::array<std::vector<std::array<Vertex, 3>>, 6>;
+[[nodiscard]] FaceFacets facets_of_faces(const Mesh& mesh, Region only = {});
+
+/// The integral of the normal over a facet [m^2].
+[[nodiscard]] inline Vec3 area_vector(const Mesh& mesh, const std::array<Vertex, 3>& facet) {
+    const Vec3& x = mesh.position[facet[0]];
+    return 0.5 * cross(mesh.position[facet[1]] - x, mesh.position[facet[2]] - x);
+}
 
 }  // namespace kropla

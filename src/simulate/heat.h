@@ -3,6 +3,7 @@
 #include <kropla/mesh/mesh.h>
 #include <kropla/simulate/fields.h>
 #include <kropla/simulate/material.h>
+#include <kropla/simulate/material_flow.h>
 #include <kropla/simulate/petsc.h>
 
 #include <array>
@@ -43,7 +44,7 @@ namespace kropla {
 // the other loses; so F_i is of triangles alone. A body moves as a whole; for one who goes with it u = 0, and
 // w = 0 but for vertices that were moved inside the body; F_i = 0. Around bodies F_i is not zero, and gas at
 // rest would go through their surface; instead it flows as they push it, u = grad Phi with
-// integral(grad Phi.grad phi_i) = F_i (flow_potential.h). The flow's part of C is that same sum over the
+// integral(grad Phi.grad phi_i) = F_i (material_flow.h). The flow's part of C is that same sum over the
 // cells' points and makes up for F_i, exactly.
 //
 // Where cells are too coarse for the convection, SUPG: the residual without diffusion (linear tets have none,
@@ -198,6 +199,14 @@ struct HeatReport {
 /// Interrupted if the watch of the ranks says so. Then `temperature` is untouched.
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt);
+
+/// The same in a flow that is known, as `material_flow` gives it for the regions that are `at_rest`. At faces of the box it
+/// brings in what is there: the face's value, or else the temperature at the face as it is.
+HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
+                     const MaterialFlow& flow, NodalField& temperature, double t, double dt);
+
+/// The regions whose material moves like that.
+[[nodiscard]] std::vector<Region> regions_that(Carried move, const HeatOptions& options);
 
 /// Brings temperatures that a transfer left beyond `least` and `most` [K] back to them, and what this takes comes from
 /// vertices around (bounded.h): the energy stays. Where enthalpies are proportional. All ranks call it together.

@@ -20,7 +20,9 @@ struct Cell {
     std::array<double, n> enthalpy;   // at the guess [J/m^3]
     std::array<double, n> slope;      // of it there [J/(m^3 K)]
     std::array<double, n> source;     // [W/m^3]
-    std::array<double, n> potential;  // [m^2/s]
+    std::array<double, n> potential;  // of the flow [m^2/s]
+    std::array<Vec3, n> velocity;     // of it, besides [m/s]
+    bool flows;
     double conductivity;              // [W/(m K)]
     double dt;                        // [s]
     bool proportional;                // the enthalpy is `slope` times the temperature, anywhere
@@ -32,6 +34,11 @@ double mean(const std::array<double, n>& values) {
     double sum = 0;
     for (double value : values) sum += value;
     return sum / static_cast<double>(n);
+}
+
+bool flows(const HeatStep& step, Region region) {
+    const bool rests = step.options.regions[static_cast<std::size_t>(region.value)].carried == Carried::at_rest;
+    return rests && (!step.flow.potential[region].empty() || !step.flow.velocity.empty());
 }
 
 template <std::size_t n, class Name>
@@ -52,7 +59,9 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
                  .enthalpy = {},
                  .slope = {},
                  .source = at_corners(step.source[region], v),
-                 .potential = at_corners(step.potential[region], v),
+                 .potential = at_corners(step.flow.potential[region], v),
+                 .velocity = {},
+                 .flows = flows(step, region),
                  .conductivity = conductivity.constant() ? conductivity(0) : mean(at_corners(state.conductivity, v)),
                  .dt = step.dt,
                  .proportional = enthalpy.proportional(),
@@ -66,6 +75,7 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
         cell.enthalpy = at_corners(state.enthalpy, v);
         cell.slope = at_corners(state.slope, v);
     }
+    if (cell.flows) cell.velocity = at_corners(step.flow.velocity, v);
     if (!step.low.empty())
         for (Vertex corner : v) cell.low = cell.low || step.low[corner] != 0;
     return cell;
@@ -161,25 +171,29 @@ template <std::size_t n>
 void add_convection(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& system) {
     const auto mean_volume_gradient = mean_volume_gradients(cell.x0, cell.x1);
     std::array<Vec3, n> moved;        // dt w
+    std::array<Vec3, n> flown_at;     // dt velocity
     std::array<Vec3, n> lumped = {};  // L on it
-    for (std::size_t i = 0; i < n; ++i) moved[i] = cell.x1[i] - cell.x0[i];
+    for (std::size_t i = 0; i < n; ++i) {
+        moved[i] = cell.x1[i] - cell.x0[i];
+        flown_at[i] = cell.dt * cell.velocity[i];
+    }
     Vec3 past;  // the integral of dt (u - w)
     for (std::size_t k = 0; k < cell.now.size(); ++k) {
         const CellPoint<n>& point = cell.now[k];
         const ShapeMeans<n>& means = shape_means<n>[k];
-        const Vec3 flown = cell.dt * gradient(point, cell.potential);
+        const Vec3 by_potential = cell.dt * gradient(point, cell.potential);
+        const Vec3 flown = by_potential + mean_value(k, flown_at);
         const Vec3 mean_moved = mean_value(k, moved);
         past += point.volume * (flown - mean_moved);
-        std::array<double, n> by_flow;
-        for (std::size_t i = 0; i < n; ++i) {
-            by_flow[i] = dot(flown, point.volume_gradient[i]);
-            carrying.row_sum[i] -= by_flow[i] - dot(mean_moved, mean_volume_gradient[k][i]);
-        }
+        for (std::size_t i = 0; i < n; ++i)
+            carrying.row_sum[i] -= dot(flown, point.volume_gradient[i]) - dot(mean_moved, mean_volume_gradient[k][i]);
         for (std::size_t j = 0; j < n; ++j) {
             const Vec3 product = mean_product(k, j, moved);
             lumped[j] += point.volume * (means.value[j] * moved[j] - product);
+            const Vec3 flown_product = means.value[j] * by_potential + mean_product(k, j, flown_at);
             for (std::size_t i = 0; i < n; ++i)
-                carrying.matrix[i][j] -= means.value[j] * by_flow[i] - dot(product, mean_volume_gradient[k][i]);
+                carrying.matrix[i][j] -=
+                    dot(flown_product, point.volume_gradient[i]) - dot(product, mean_volume_gradient[k][i]);
         }
     }
     if (cell.low) return;
@@ -218,8 +232,7 @@ CellSystem<n> system_of(const HeatStep& step, const Name& name) {
     CellSystem<n> system;
     add_mass(cell, carrying, system);
     add_conduction(cell, system);
-    const bool flows = !step.potential[cell_region(step.current, name)].empty();
-    if (flows || cell.x0 != cell.x1) add_convection(cell, carrying, system);
+    if (cell.flows || cell.x0 != cell.x1) add_convection(cell, carrying, system);
     add_carrying(cell, carrying, system);
     return system;
 }

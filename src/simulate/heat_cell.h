@@ -2,6 +2,7 @@
 
 #include "simulate/assembly.h"
 #include "simulate/elements.h"
+#include <kropla/simulate/material_flow.h>
 #include <kropla/simulate/heat.h>
 
 namespace kropla {
@@ -20,7 +21,7 @@ struct HeatStep {
     const Mesh& current;
     const HeatOptions& options;
     const Array<Vertex, double>& old_temperature;
-    Array<Region, Array<Vertex, double>> potential;  // of the flow of material at rest [m^2/s], or empty
+    const MaterialFlow& flow;                        // of what does not go with the mesh
     Array<Region, Array<Vertex, Vec3>> carried;      // where a body's vertices came from [m], or empty
     const Array<Region, Array<Vertex, double>>& source;  // its mean at the region's vertices [W/m^3], or empty
     double dt;                                       // [s]

@@ -58,29 +58,9 @@ Shares shares_of_region(const Mesh& mesh, Region region) {
 
 Shares shares_of_surface(const Mesh& mesh, const std::vector<std::array<Vertex, 3>>& facets) {
     Array<Vertex, double> area(mesh.position.size(), 0.0);
-    for (const auto& [a, b, c] : facets) {
-        const Vec3 normal = cross(mesh.position[b] - mesh.position[a], mesh.position[c] - mesh.position[a]);
-        for (Vertex v : {a, b, c}) area[v] += norm(normal) / 6;
-    }
+    for (const auto& facet : facets)
+        for (Vertex v : facet) area[v] += norm(area_vector(mesh, facet)) / 3;
     return listed(area);
-}
-
-/// The facets on each face of the box.
-std::array<std::vector<std::array<Vertex, 3>>, 6> facets_of_faces(const Mesh& mesh) {
-    std::array<std::vector<std::array<Vertex, 3>>, 6> facets;
-    for (Tet t : living_cells(mesh).tets) {
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Patch patch = mesh.patch[t][corner];
-            if (!patch.exists() || mesh.neighbour[t][corner].exists()) continue;
-            const auto face = static_cast<std::size_t>(patch.value);
-            if (face >= facets.size()) continue;
-            std::array<Vertex, 3> facet;
-            for (std::size_t k = 0; k < 3; ++k)
-                facet[k] = mesh.tets[t][static_cast<std::size_t>(tet_facets[corner][k])];
-            facets[face].push_back(facet);
-        }
-    }
-    return facets;
 }
 
 /// Scales the means so that their integral is the power, where one is given. `key` is of the two together.

@@ -81,10 +81,9 @@ Concentrations initial_concentrations(const Mesh& mesh, const Species& species) 
 }
 
 SpeciesReport step_species(const Ranks& ranks, const Mesh& before, const Mesh& current, const Species& species,
-                           const HeatOptions& heat, const std::vector<SurfaceFlux>& surfaces, Concentrations& values,
-                           double t, double dt) {
+                           const HeatOptions& heat, const MaterialFlow& flow, const std::vector<SurfaceFlux>& surfaces,
+                           Concentrations& values, double t, double dt) {
     check_species(species);
-    const DisplacedFlow flow = solve_displaced_flow(ranks, before, current, regions_that(Carried::at_rest, heat), dt);
     SpeciesReport report{std::vector<HeatBalance>(species.regions.size())};
     for (std::size_t r = 0; r < species.regions.size(); ++r) {
         if (!species.regions[r]) continue;

@@ -44,11 +44,11 @@ struct SpeciesReport {
     std::vector<HeatBalance> balance;
 };
 
-/// Takes the concentrations from t [s] on `before` to t + dt on `current`. `heat` says how materials move, `surfaces` what
-/// heat left bodies in this step (HeatReport; empty: none). Ranks, solver and errors as for step_heat; with an error some
+/// Takes the concentrations from t [s] on `before` to t + dt on `current`. `heat` and `flow` (material_flow.h) say how
+/// materials move, `surfaces` what heat left bodies in this step (HeatReport; empty: none). Ranks, solver and errors as for step_heat; with an error some
 /// regions may have been stepped.
 SpeciesReport step_species(const Ranks& ranks, const Mesh& before, const Mesh& current, const Species& species,
-                           const HeatOptions& heat, const std::vector<SurfaceFlux>& surfaces, Concentrations& values,
-                           double t, double dt);
+                           const HeatOptions& heat, const MaterialFlow& flow, const std::vector<SurfaceFlux>& surfaces,
+                           Concentrations& values, double t, double dt);
 
 }  // namespace kropla

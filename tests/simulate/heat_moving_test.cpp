@@ -3,7 +3,7 @@
 #include <kropla/base/error.h>
 #include "base/random.h"
 #include "simulate/elements.h"
-#include "simulate/flow_potential.h"
+#include <kropla/simulate/material_flow.h>
 
 #include <gtest/gtest.h>
 
@@ -136,8 +136,8 @@ TEST(HeatMoving, GasMakesWayForABodyAsTheLawOfPotentialFlowSays) {
     const Mesh before = unit_cube(4);
     Mesh current = before;
     for (Vertex v : current.position.indices()) current.position[v] += Vec3{0.1, -0.2, 0.3};
-    const DisplacedFlow flow =
-        solve_displaced_flow(petsc().all_ranks(), before, current, {surroundings}, 0.5);
+    const MaterialFlow flow =
+        material_flow(petsc().all_ranks(), before, current, {surroundings}, 0.5);
     for (Tet t : living_cells(current).tets) {
         const auto potential = at_corners(flow.potential[surroundings], cell_vertices(current, t));
         const Vec3 velocity = gradient(linear_tet(corners(current, t)), potential);

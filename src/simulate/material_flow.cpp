@@ -1,7 +1,7 @@
-// The potential flow around moving bodies, by linear tets and prisms.
+// The potential flow around moving bodies, by linear tets and prisms, and what corrects a velocity.
 //   [Batchelor 1967] An introduction to fluid dynamics, 2.7 and 6.4: the irrotational flow that a moving
 //     boundary sets up has the least kinetic energy of all that satisfy continuity.
-#include "simulate/flow_potential.h"
+#include <kropla/simulate/material_flow.h>
 
 #include "simulate/assembly.h"
 #include "simulate/elements.h"
@@ -51,6 +51,36 @@ Array<Vertex, double> shares_of_volume(const Mesh& mesh, const Cells& cells) {
     return share;
 }
 
+/// Lists what passes the faces of the box, from a region.
+void add_through(const Mesh& mesh, Region region, const Array<Vertex, Vec3>& velocity, MaterialFlow& flow) {
+    const auto facets = facets_of_faces(mesh, region);
+    for (std::size_t face = 0; face < facets.size(); ++face) {
+        Array<Vertex, double> rate(mesh.position.size(), 0.0);
+        for (const auto& facet : facets[face]) {
+            const Vec3 area = area_vector(mesh, facet);
+            const Vec3 sum = velocity[facet[0]] + velocity[facet[1]] + velocity[facet[2]];
+            for (Vertex v : facet) rate[v] += dot(area, velocity[v] + sum) / 12;
+        }
+        for (Vertex v : rate.indices())
+            if (rate[v] != 0) flow.through.push_back({v, region, face, rate[v]});
+    }
+}
+
+/// Takes from `source` the integrals of grad phi_i . velocity over the cells.
+void take_divergence(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& velocity,
+                     Array<Vertex, double>& source) {
+    for_each_cell(cells, [&](const auto& cell) {
+        const auto vertices = cell_vertices(mesh, cell);
+        const auto points = cell_points(corners(mesh, cell));
+        const auto at_corner = at_corners(velocity, vertices);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const Vec3 mean = mean_value(k, at_corner);
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                source[vertices[i]] -= dot(mean, points[k].volume_gradient[i]);
+        }
+    });
+}
+
 /// Takes the sum out of `swept`, from each vertex after its share of the volume: else there is no solution.
 void balance(const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
     const double rate = std::accumulate(swept.begin(), swept.end(), 0.0) /
@@ -95,23 +125,29 @@ Array<Vertex, double> at_vertices(const Mesh& mesh, const Numbering& numbering,
 
 }  // namespace
 
-DisplacedFlow solve_displaced_flow(const Ranks& ranks, const Mesh& before, const Mesh& current,
-                                   const std::vector<Region>& resting, double dt) {
-    DisplacedFlow flow{Array<Region, Array<Vertex, double>>(count_regions(current)), 0};
+MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& current,
+                           const std::vector<Region>& flowing, double dt, const Array<Vertex, Vec3>& velocity) {
+    MaterialFlow flow{Array<Region, Array<Vertex, double>>(count_regions(current)), velocity};
     const Step step{before, current, dt};
     const SolverChoice choice{.name = "potential flow",
                               .prefix = "potential_",
                               .preconditioner = Preconditioner::multigrid,
                               .tolerance = 2e-13,
                               .potential = true};
-    for (Region region : resting) {
-        Array<Vertex, double> swept = swept_by_boundary(step, region);
-        if (std::ranges::all_of(swept, [](double s) { return s == 0; })) continue;
+    for (Region region : flowing) {
+        Array<Vertex, double> source = swept_by_boundary(step, region);
         const Cells cells = living_cells(current, region);
+        if (!velocity.empty()) {
+            add_through(current, region, velocity, flow);
+            for (const auto& [v, of, face, rate] : flow.through)
+                if (of == region) source[v] += rate;
+            take_divergence(current, cells, velocity, source);
+        }
+        if (std::ranges::all_of(source, [](double s) { return s == 0; })) continue;
         const Array<Vertex, double> share = shares_of_volume(current, cells);
-        balance(share, swept);
+        balance(share, source);
         const Pattern pattern = make_pattern(current, cells, ranks);
-        const LinearSystem system = potential_system(current, pattern, swept, share, dt, ranks.watch);
+        const LinearSystem system = potential_system(current, pattern, source, share, dt, ranks.watch);
         const Solution potential = solve(ranks, system, choice);
         flow.potential[region] = at_vertices(current, pattern.numbering, potential.value);
         flow.iterations += potential.iterations;
