@@ -2,10 +2,14 @@
 
 #include <kropla/mesh/mesh.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace kropla {
+
+/// A quantity at a place [m] and a time [s].
+using Quantity = std::function<double(const Vec3& place, double t)>;
 
 /// A scalar per vertex of a mesh, linear in every tet; in a prism linear in the triangle and along
 /// the column.

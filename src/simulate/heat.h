@@ -59,9 +59,6 @@ namespace kropla {
 // between corners by chords, k at the last temperatures, until these stay. What is kept is the integral of h, taken as
 // linear between vertices. Radiation at boundaries likewise.
 
-/// A quantity at a place [m] and a time [s].
-using Quantity = std::function<double(const Vec3& place, double t)>;
-
 /// How the material of a region moves.
 enum class Carried {
     with_mesh,  ///< as its interface does: a body, which moves as a whole

@@ -315,9 +315,10 @@ private:
             if (row < 0 || !system.owns(row)) continue;
             const std::size_t r = system.local(row);
             const Enthalpy& h = step_.enthalpy[region];
-            const double taken = step_.dt * rate, slope = h.slope(after_[v]);
+            const MaterialState& state = step_.material[region];
+            const double taken = step_.dt * rate, slope = h.proportional() ? h.slope(0) : state.slope[v];
             system.row_sum[r] += taken * slope;
-            if (!h.proportional()) system.right[r] += taken * (slope * after_[v] - h(after_[v]));
+            if (!h.proportional()) system.right[r] += taken * (slope * step_.guess[v] - state.enthalpy[v]);
         }
     }
     /// -1 where the region is not stepped.

@@ -1,0 +1,32 @@
+#include "simulate/block_system.h"
+
+namespace kropla {
+namespace {
+
+constexpr std::size_t rows_of_part = 2048;  // a cube of some 13 vertices a side: every fourth cell is asked for twice
+
+template <std::size_t n>
+std::vector<std::uint32_t> cells_of(const CellsAtRows<n>& at, std::size_t first_row, std::size_t end_row) {
+    std::vector<std::uint32_t> cells;
+    for (std::size_t k = at.begin[first_row]; k < at.begin[end_row]; ++k) cells.push_back(at.cells[k].cell);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+}
+
+}  // namespace
+
+BlockPattern make_block_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks) {
+    BlockPattern blocks{make_pattern(mesh, cells, ranks), {}};
+    const std::size_t rows = blocks.pattern.rows.count();
+    const std::size_t count = (rows + rows_of_part - 1) / rows_of_part;
+    blocks.parts.resize(count);
+    for_all(count, [&](std::size_t p) {
+        const std::size_t first = p * rows / count, end = (p + 1) * rows / count;
+        blocks.parts[p] = {first, end, cells_of(blocks.pattern.tets, first, end),
+                           cells_of(blocks.pattern.prisms, first, end)};
+    }, 1);
+    return blocks;
+}
+
+}  // namespace kropla

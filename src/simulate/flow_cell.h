@@ -1,0 +1,39 @@
+#pragma once
+
+#include "simulate/block_system.h"
+#include "simulate/elements.h"
+#include <kropla/simulate/flow.h>
+
+namespace kropla {
+
+/// What acts in a liquid or gas.
+struct FlowMaterial {
+    double density = 0, viscosity = 0;           // where they do not depend on the temperature
+    Array<Vertex, double> densities, viscosities;  // at vertices, where they do
+    Array<Vertex, Vec3> force;                   // [N/m^3] at vertices, besides gravity; empty: none
+};
+
+/// A stage of a step: all that a cell needs to know of it. Arrays that are empty are of zeros.
+struct FlowStage {
+    const Mesh& mesh;                          // for its connectivity
+    const Array<Vertex, Vec3>& position;       // [m] at the stage's time
+    const Array<Vertex, Vec3>& mesh_velocity;  // [m/s]
+    const Array<Vertex, Vec3>& old;            // [m/s] from which the rate is reckoned, u* in flow.h
+    const FlowState& guess;                    // about which the equations are taken as linear
+    const Array<Region, FlowMaterial>& material;
+    const std::array<bool, 6>& open;                            // faces
+    const std::array<Array<Vertex, double>, 6>& open_pressure;  // [Pa]
+    Vec3 gravity;                                               // [m/s^2]
+    double per_time;                                            // [1/s] 1 / (gamma dt), or zero
+    bool convection;
+};
+
+/// The cell's part of the residual, rows of momentum [N] and of volume [m^3/s]; and of its derivative if it is wanted.
+void flow_cell(const FlowStage& stage, Tet t, bool derivative, CellBlocks<4>& blocks);
+void flow_cell(const FlowStage& stage, const Prism& prism, bool derivative, CellBlocks<6>& blocks);
+
+/// How many of its heights the flow crosses in a cell, per time [1/s].
+[[nodiscard]] double crossing_rate(const FlowStage& stage, Tet t);
+[[nodiscard]] double crossing_rate(const FlowStage& stage, const Prism& prism);
+
+}  // namespace kropla

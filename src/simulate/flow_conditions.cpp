@@ -1,0 +1,268 @@
+// What acts on a step of a flow: surfaces and what is given there, forces, materials.
+#include "simulate/flow_conditions.h"
+
+#include <kropla/base/error.h>
+#include <kropla/mesh/cells.h>
+#include "simulate/elements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace kropla {
+namespace {
+
+constexpr double unbalanced = 0.01;  // [-] of all that passes the boundary: beyond what its facets' shape explains
+constexpr std::array<const char*, 6> face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+
+bool is_fluid(const FlowOptions& options, Region region) {
+    return options.regions[static_cast<std::size_t>(region.value)].has_value();
+}
+
+std::vector<Vertex> vertices_of(const std::vector<std::array<Vertex, 3>>& facets) {
+    std::vector<Vertex> vertices;
+    for (const auto& facet : facets) vertices.insert(vertices.end(), facet.begin(), facet.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+Vec3 centre_of(const Mesh& mesh, Region body) {
+    Vec3 sum;
+    double volume = 0;
+    for_each_share(mesh, living_cells(mesh, body), [&](const auto&, Vertex v, double share) {
+        sum += share * mesh.position[v];
+        volume += share;
+    });
+    return volume > 0 ? sum / volume : Vec3{};
+}
+
+/// The velocity of a body, or nothing: as its surface moves.
+const std::function<RigidVelocity(double)>* motion_of(const FlowOptions& options, Region body) {
+    const auto number = static_cast<std::size_t>(body.value - 1);
+    if (number >= options.bodies.size() || !options.bodies[number]) return nullptr;
+    return &options.bodies[number];
+}
+
+Vec3 rigid_velocity(const RigidVelocity& body, const Vec3& place) {
+    return body.velocity + cross(body.spin, place - body.centre);
+}
+
+Vec3 value_of(const VectorQuantity& quantity, const Vec3& place, double t) {
+    Vec3 value;
+    for (std::size_t m = 0; m < 3; ++m)
+        if (quantity[m]) value[static_cast<int>(m)] = quantity[m](place, t);
+    return value;
+}
+
+[[noreturn]] void refuse(const std::string& key, const Vec3& value, const Vec3& place, double t) {
+    std::ostringstream message;
+    message << key << " must be finite, got (" << value.x << ", " << value.y << ", " << value.z << ") at (" << place.x
+            << ", " << place.y << ", " << place.z << ") m, t = " << t << " s";
+    throw CaseError(message.str());
+}
+
+/// A step, and what it starts from.
+struct Step {
+    const Mesh &before, &current;
+    const FlowOptions& options;
+    const Array<Vertex, Vec3>& velocity;
+    double t, dt;
+};
+
+/// A velocity that is given at all times, at a vertex on its way: at the step's end, with its rate there by the parabola
+/// through three times. A steady state has no rates, and a mesh that stands where it is at the end.
+template <class Given>
+void fix(const Step& step, Vertex v, const Given& given, const std::string& key, FlowConditions& conditions) {
+    const Vec3 &x0 = step.before.position[v], &x1 = step.current.position[v];
+    const double end = step.t + step.dt;
+    conditions.fixed[v] = {true, true, true};
+    conditions.end[v] = given(x1, end);
+    conditions.rate[v] = {};
+    if (step.options.scheme == FlowScheme::second_order)
+        conditions.rate[v] = (1 / step.dt) * (given(x0, step.t) - 4 * given(0.5 * (x0 + x1), step.t + 0.5 * step.dt) +
+                                              3 * conditions.end[v]);
+    if (!is_finite(conditions.end[v]) || !is_finite(conditions.rate[v])) refuse(key, conditions.end[v], x1, end);
+}
+
+void fix_face(const Step& step, std::size_t face, const std::vector<Vertex>& vertices, FlowConditions& conditions) {
+    const std::string key = step.options.key + ".face." + face_names[face] + ".velocity";
+    const VectorQuantity& velocity = step.options.faces[face].velocity;
+    for (Vertex v : vertices)
+        fix(step, v, [&](const Vec3& place, double t) { return value_of(velocity, place, t); }, key, conditions);
+}
+
+void let_slip(std::size_t face, const std::vector<Vertex>& vertices, FlowConditions& conditions) {
+    for (Vertex v : vertices) conditions.fixed[v][face / 2] = true;
+}
+
+void fix_solid(const Step& step, const SolidSurface& solid, FlowConditions& conditions) {
+    if (const auto* const motion = motion_of(step.options, solid.body); motion != nullptr) {
+        const std::string key = step.options.key + ".region." + std::to_string(solid.body.value) + ".velocity";
+        const auto given = [&](const Vec3& place, double t) { return rigid_velocity((*motion)(t), place); };
+        for (Vertex v : solid.vertices) fix(step, v, given, key, conditions);
+        return;
+    }
+    for (Vertex v : solid.vertices) {
+        conditions.fixed[v] = {true, true, true};
+        conditions.end[v] = (step.current.position[v] - step.before.position[v]) / step.dt;
+        conditions.rate[v] = (conditions.end[v] - step.velocity[v]) / step.dt;
+    }
+}
+
+/// The sizes of the fluxes through facets [m^3/s].
+double sizes_of_fluxes(const std::vector<std::array<Vertex, 3>>& facets, const Array<Vertex, Vec3>& position,
+                       const Array<Vertex, Vec3>& velocity) {
+    double sum = 0;
+    for (const auto& facet : facets) sum += std::abs(flux_through({facet}, position, velocity));
+    return sum;
+}
+
+void check_way_out(const Step& step, const FlowBoundary& boundary, const FlowConditions& conditions) {
+    const Array<Vertex, Vec3>& x = step.current.position;
+    double net = 0, sizes = 0;
+    const auto add = [&](const auto& facets) {
+        net += flux_through(facets, x, conditions.end);
+        sizes += sizes_of_fluxes(facets, x, conditions.end);
+    };
+    for (std::size_t face = 0; face < 6; ++face)
+        if (step.options.faces[face].kind == FlowFace::Kind::velocity) add(boundary.faces[face]);
+    for (const SolidSurface& solid : boundary.solids) add(solid.facets);
+    if (std::abs(net) <= unbalanced * sizes) return;
+    std::ostringstream message;
+    message << step.options.key << ": " << std::abs(net) << " m^3/s flow " << (net < 0 ? "in without a way out" : "out and nothing in")
+            << " at t = " << step.t + step.dt << " s: open a face, or let the given velocities balance";
+    throw CaseError(message.str());
+}
+
+}  // namespace
+
+Cells flow_cells(const Mesh& mesh, const FlowOptions& options) {
+    Cells all = living_cells(mesh), cells;
+    for (Tet t : all.tets)
+        if (is_fluid(options, cell_region(mesh, t))) cells.tets.push_back(t);
+    for (const Prism& prism : all.prisms)
+        if (is_fluid(options, cell_region(mesh, prism))) cells.prisms.push_back(prism);
+    return cells;
+}
+
+FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t) {
+    FlowBoundary boundary;
+    for (Tet tet : flow_cells(mesh, options).tets)
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Patch patch = mesh.patch[tet][corner];
+            if (!patch.exists() || patch.value >= box_faces) continue;
+            std::array<Vertex, 3> facet;
+            for (std::size_t k = 0; k < 3; ++k)
+                facet[k] = mesh.tets[tet][static_cast<std::size_t>(tet_facets[corner][k])];
+            boundary.faces[static_cast<std::size_t>(patch.value)].push_back(facet);
+        }
+    for (std::size_t r = 1; r < options.regions.size(); ++r) {
+        const Region body(r);
+        if (is_fluid(options, body)) continue;
+        const auto* const motion = motion_of(options, body);
+        SolidSurface solid{body, motion != nullptr ? (*motion)(t).centre : centre_of(mesh, body),
+                           region_surface(mesh, body).interface, {}};
+        for (auto& facet : solid.facets) std::swap(facet[1], facet[2]);
+        solid.vertices = vertices_of(solid.facets);
+        if (!solid.facets.empty()) boundary.solids.push_back(std::move(solid));
+    }
+    return boundary;
+}
+
+FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const FlowOptions& options,
+                               const FlowBoundary& boundary, const Array<Vertex, Vec3>& velocity, double t, double dt) {
+    const std::size_t count = current.position.size();
+    FlowConditions conditions{Array<Vertex, std::array<bool, 3>>(count, {false, false, false}),
+                              Array<Vertex, Vec3>(count), Array<Vertex, Vec3>(count), {}, true};
+    const Step step{before, current, options, velocity, t, dt};
+    std::array<std::vector<Vertex>, 6> vertices;
+    for (std::size_t face = 0; face < 6; ++face) vertices[face] = vertices_of(boundary.faces[face]);
+    for (std::size_t face = 0; face < 6; ++face) {
+        if (options.faces[face].kind == FlowFace::Kind::slip) let_slip(face, vertices[face], conditions);
+        conditions.open[face] = options.faces[face].kind == FlowFace::Kind::open;
+        if (conditions.open[face] && !vertices[face].empty()) conditions.closed = false;
+    }
+    for (std::size_t face = 6; face-- > 0;)
+        if (options.faces[face].kind == FlowFace::Kind::velocity) fix_face(step, face, vertices[face], conditions);
+    for (std::size_t face = 0; face < 6; ++face)
+        if (options.faces[face].kind == FlowFace::Kind::wall)
+            for (Vertex v : vertices[face])
+                fix(step, v, [](const Vec3&, double) { return Vec3{}; }, "", conditions);
+    for (const SolidSurface& solid : boundary.solids) fix_solid(step, solid, conditions);
+    if (conditions.closed) check_way_out(step, boundary, conditions);
+    return conditions;
+}
+
+std::array<Array<Vertex, double>, 6> open_pressures(const Array<Vertex, Vec3>& position, const FlowOptions& options,
+                                                    const FlowBoundary& boundary, double t) {
+    std::array<Array<Vertex, double>, 6> pressures;
+    for (std::size_t face = 0; face < 6; ++face) {
+        const Quantity& pressure = options.faces[face].pressure;
+        if (options.faces[face].kind != FlowFace::Kind::open || !pressure) continue;
+        pressures[face].resize(position.size(), 0.0);
+        for (Vertex v : vertices_of(boundary.faces[face])) {
+            pressures[face][v] = pressure(position[v], t);
+            if (std::isfinite(pressures[face][v])) continue;
+            std::ostringstream message;
+            message << options.key << ".face." << face_names[face] << ".pressure must be finite, got "
+                    << pressures[face][v] << " at t = " << t << " s";
+            throw CaseError(message.str());
+        }
+    }
+    return pressures;
+}
+
+double flux_through(const std::vector<std::array<Vertex, 3>>& facets, const Array<Vertex, Vec3>& position,
+                    const Array<Vertex, Vec3>& velocity) {
+    double sum = 0;
+    for (const auto& [a, b, c] : facets)
+        sum += dot(cross(position[b] - position[a], position[c] - position[a]),
+                   velocity[a] + velocity[b] + velocity[c]) / 6;
+    return sum;
+}
+
+Array<Region, FlowMaterial> flow_materials(const Mesh& mesh, const FlowOptions& options,
+                                           const Array<Vertex, double>& temperature) {
+    Array<Region, FlowMaterial> materials(options.regions.size());
+    const auto set = [&](const Property& property, const std::string& key, double& value, Array<Vertex, double>& values) {
+        if (property.constant()) {
+            value = property(0);
+            return;
+        }
+        if (temperature.empty()) throw CaseError(key + " depends on the temperature, and there is none");
+        values.resize(mesh.position.size(), 0.0);
+        for (Vertex v : mesh.position.indices())
+            if (alive(mesh, v)) values[v] = property(temperature[v]);
+    };
+    for (Region r : materials.indices()) {
+        if (!is_fluid(options, r)) continue;
+        const FlowRegion& region = *options.regions[static_cast<std::size_t>(r.value)];
+        const std::string key = options.key + ".region." + std::to_string(r.value);
+        set(region.density, key + ".density", materials[r].density, materials[r].densities);
+        set(region.viscosity, key + ".viscosity", materials[r].viscosity, materials[r].viscosities);
+    }
+    return materials;
+}
+
+void set_forces(const Mesh& mesh, const Array<Vertex, Vec3>& position, const FlowOptions& options, double t,
+                Array<Region, FlowMaterial>& material) {
+    for (Region r : material.indices()) {
+        if (!is_fluid(options, r)) continue;
+        const VectorQuantity& force = options.regions[static_cast<std::size_t>(r.value)]->force;
+        if (!force[0] && !force[1] && !force[2]) continue;
+        material[r].force.resize(position.size());
+        Array<Vertex, char> done(position.size(), 0);
+        for_each_cell(living_cells(mesh, r), [&](const auto& cell) {
+            for (Vertex v : cell_vertices(mesh, cell)) {
+                if (done[v]) continue;
+                done[v] = 1;
+                const Vec3 value = material[r].force[v] = value_of(force, position[v], t);
+                if (!is_finite(value))
+                    refuse(options.key + ".region." + std::to_string(r.value) + ".force", value, position[v], t);
+            }
+        });
+    }
+}
+
+}  // namespace kropla

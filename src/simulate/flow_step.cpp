@@ -1,0 +1,356 @@
+// One step of a flow: the stages of flow.h, each solved by Newton's method.
+//   [Dembo, Eisenstat, Steihaug 1982] Inexact Newton methods. SIAM J. Numer. Anal. 19: linear systems are solved no
+//     better than the pass deserves.
+// The derivative is kept from pass to pass, and from the first stage to the second, while it serves.
+#include <kropla/base/error.h>
+#include "simulate/assembly.h"
+#include "simulate/flow_cell.h"
+#include "simulate/flow_conditions.h"
+#include "simulate/flow_solver.h"
+#include "simulate/stop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <sstream>
+
+namespace kropla {
+namespace {
+
+constexpr double gamma = 1 - 1 / std::numbers::sqrt2;
+constexpr double margin = 0.3;       // [-] of what is wanted of the residual: what a linear system is solved to, and
+constexpr double forcing = 1e-3;     // [-] of the residual, at the best
+constexpr double stagnation = 0.5;   // [-] of the residual: a pass that leaves more got nowhere, and
+constexpr double rounding = 1e-12;   // [-] of the terms of the residual is where that is no failure
+constexpr double viscous_share = 8;  // [-] viscous to mass terms, over which multigrid is cheaper
+
+Array<Vertex, Vec3> between(const Mesh& before, const Mesh& current, double share) {
+    if (share == 1) return current.position;
+    Array<Vertex, Vec3> position = current.position;
+    for (Vertex v : position.indices())
+        position[v] = (1 - share) * before.position[v] + share * current.position[v];
+    return position;
+}
+
+Array<Vertex, Vec3> mesh_velocities(const Mesh& before, const Mesh& current, double dt) {
+    Array<Vertex, Vec3> velocity(current.position.size());
+    for (Vertex v : velocity.indices())
+        velocity[v] = alive(current, v) ? (current.position[v] - before.position[v]) / dt : Vec3{};
+    return velocity;
+}
+
+/// Of a conduction-like matrix, what the pressure's preconditioner needs of a cell: in `matrix` that of the Laplacian.
+template <std::size_t n>
+CellSystem<n> pressure_cell(const CellPoints<n>& points, double laplacian, double viscous) {
+    CellSystem<n> system;
+    for (std::size_t k = 0; k < points.size(); ++k)
+        for (std::size_t i = 0; i < n; ++i) {
+            system.held[i] += viscous * points[k].volume * shape_means<n>[k].value[i];
+            for (std::size_t j = 0; j < n; ++j)
+                system.matrix[i][j] +=
+                    laplacian / points[k].volume * dot(points[k].volume_gradient[i], points[k].volume_gradient[j]);
+        }
+    return system;
+}
+
+/// A step while it is solved.
+class FlowSolution {
+public:
+    FlowSolution(const Ranks& ranks, const Mesh& before, const Mesh& current, const FlowOptions& options,
+                 const FlowState& start, double t, double dt, const Array<Vertex, double>& temperature)
+        : ranks_(ranks), before_(before), current_(current), options_(options), start_(start), t_(t), dt_(dt),
+          blocks_(make_block_pattern(current, flow_cells(current, options), ranks)),
+          boundary_(flow_boundary(current, options, t + dt)),
+          conditions_(flow_conditions(before, current, options, boundary_, start.velocity, t, dt)),
+          material_(flow_materials(current, options, temperature)), guess_(start),
+          solver_(ranks, blocks_, unknowns()) {
+        system_.value = solver_.values();
+        if (!steady()) mesh_velocity_ = mesh_velocities(before, current, dt);
+    }
+
+    void solve_all() {
+        if (options_.scheme != FlowScheme::second_order) {
+            prescribe(conditions_.end);
+            solve_stage(1, start_.velocity, steady() ? 0 : 1 / dt_);
+            return;
+        }
+        constexpr double onward = (1 - gamma) / gamma;
+        Array<Vertex, Vec3> given = conditions_.end;  // of the first stage
+        for (Vertex v : given.indices()) {
+            const Vec3 last = conditions_.end[v] - gamma * dt_ * conditions_.rate[v];
+            given[v] = start_.velocity[v] + (1 / onward) * (last - start_.velocity[v]);
+        }
+        prescribe(given);
+        solve_stage(gamma, start_.velocity, 1 / (gamma * dt_));
+        Array<Vertex, Vec3> old = start_.velocity;
+        for (Vertex v : numbering().vertex) {
+            const Vec3 gained = guess_.velocity[v] - start_.velocity[v];
+            old[v] += onward * gained;
+            guess_.velocity[v] = start_.velocity[v] + (1 / gamma) * gained;
+        }
+        prescribe(conditions_.end);
+        solve_stage(1, old, 1 / (gamma * dt_));
+    }
+
+    /// What is left of the last stage's residual goes into forces.
+    [[nodiscard]] FlowReport report() const {
+        FlowReport report;
+        report.iterations = solver_.iterations();
+        report.passes = passes_;
+        report.error = error_;
+        const Array<Vertex, Vec3> reaction = reactions();
+        for (const SolidSurface& solid : boundary_.solids) {
+            BodyForce of{solid.body, solid.centre};
+            for (Vertex v : solid.vertices) {
+                of.force -= reaction[v];
+                of.torque -= cross(current_.position[v] - solid.centre, reaction[v]);
+            }
+            of.flux = flux_through(solid.facets, current_.position, guess_.velocity);
+            report.net_flux += of.flux;
+            report.bodies.push_back(of);
+        }
+        for (std::size_t face = 0; face < 6; ++face) {
+            report.face_flux[face] = flux_through(boundary_.faces[face], current_.position, guess_.velocity);
+            report.net_flux += report.face_flux[face];
+        }
+        report.largest_courant = largest_courant();
+        return report;
+    }
+
+    /// The state at the step's end: zero where nothing flows.
+    [[nodiscard]] FlowState state() const {
+        FlowState end = still_flow(current_);
+        for (Vertex v : numbering().vertex) {
+            end.velocity[v] = guess_.velocity[v];
+            end.pressure[v] = guess_.pressure[v];
+        }
+        if (!conditions_.closed) return end;
+        double sum = 0, volume = 0;
+        for_each_share(current_, flow_cells(current_, options_), [&](const auto&, Vertex v, double share) {
+            sum += share * end.pressure[v];
+            volume += share;
+        });
+        for (Vertex v : numbering().vertex) end.pressure[v] -= sum / volume;
+        return end;
+    }
+
+private:
+    [[nodiscard]] const SparseRows& rows() const { return blocks_.pattern.rows; }
+    [[nodiscard]] const Numbering& numbering() const { return blocks_.pattern.numbering; }
+    [[nodiscard]] bool steady() const { return options_.scheme == FlowScheme::steady; }
+    [[nodiscard]] Vertex vertex_of(std::size_t owned_row) const {
+        return numbering().vertex[static_cast<std::size_t>(rows().first_row) + owned_row];
+    }
+
+    [[nodiscard]] FlowUnknowns unknowns() const {
+        FlowUnknowns unknowns{{}, conditions_.closed};
+        for (Vertex v : numbering().vertex) {
+            for (bool fixed : conditions_.fixed[v]) unknowns.fixed.push_back(fixed ? 1 : 0);
+            unknowns.fixed.push_back(0);
+        }
+        return unknowns;
+    }
+
+    void prescribe(const Array<Vertex, Vec3>& velocity) {
+        for (Vertex v : numbering().vertex)
+            for (int m = 0; m < 3; ++m)
+                if (conditions_.fixed[v][static_cast<std::size_t>(m)]) guess_.velocity[v][m] = velocity[v][m];
+    }
+
+    /// The stage on the mesh at `share` of the step.
+    void solve_stage(double share, const Array<Vertex, Vec3>& old, double per_time) {
+        const Array<Vertex, Vec3> position = between(before_, current_, share);
+        const double time = t_ + share * dt_;
+        set_forces(current_, position, options_, time, material_);
+        const auto open_pressure = open_pressures(position, options_, boundary_, time);
+        const FlowStage stage{current_, position, mesh_velocity_, old, guess_, material_, conditions_.open, open_pressure,
+                              options_.gravity, per_time, options_.convection};
+        find_shares(position);
+        const bool fresh = !solver_.has_matrix();
+        assemble(stage, fresh);
+        if (fresh) take_matrix(stage);
+        double left = solver_.size(system_.residual);
+        largest_left_ = std::max(largest_left_, left);
+        const double wanted = options_.tolerance * largest_left_;
+        for (int pass = 1; left > wanted; ++pass) {
+            if (getenv("DBG")) fprintf(stderr, "pass %d left %g wanted %g its %d\n", pass, left, wanted, solver_.iterations());
+            if (pass > options_.most_passes || !std::isfinite(left)) give_up(pass, left / largest_left_);
+            add(solver_.solve(system_.residual, std::max(margin * wanted / left, forcing)));
+            ++passes_;
+            assemble(stage, false);
+            const double before = left;
+            left = solver_.size(system_.residual);
+            const double reduction = left / before;
+            if (left <= wanted || reduction * reduction * left <= wanted) continue;  // two more passes as this one
+            if (left > stagnation * before && left <= rounding * solver_.size_of_terms(unknown())) break;
+            assemble(stage, true);
+            take_matrix(stage);
+            left = solver_.size(system_.residual);
+        }
+        if (left > 0) error_ = left / largest_left_;
+    }
+
+    [[noreturn]] void give_up(int pass, double left) const {
+        std::ostringstream message;
+        message << "the flow did not converge: after " << pass - 1 << " passes of Newton's method " << left
+                << " of the residual is left, t = " << t_ + dt_ << " s: smaller steps may help";
+        throw SolverError(message.str());
+    }
+
+    void assemble(const FlowStage& stage, bool derivative) {
+        heed(ranks_);
+        assemble_blocks(current_, blocks_,
+                        [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
+                        system_, ranks_.watch);
+        reaction_ = system_.residual;
+        if (conditions_.closed) spread_net_flux();
+    }
+
+    /// What the given velocities let in more than out, as rounding and facets have it, is spread over the volume.
+    void spread_net_flux() {
+        double mine = 0, net = 0;
+        for (std::size_t r = 0; r < rows().count(); ++r) mine += system_.residual[block_size * r + 3];
+        MPI_Allreduce(&mine, &net, 1, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
+        for (std::size_t r = 0; r < rows().count(); ++r)
+            system_.residual[block_size * r + 3] -= net * share_of_volume_[vertex_of(r)];
+    }
+
+    void find_shares(const Array<Vertex, Vec3>& position) {
+        if (!conditions_.closed) return;
+        share_of_volume_ = Array<Vertex, double>(position.size(), 0.0);
+        double total = 0;
+        for_each_cell(flow_cells(current_, options_), [&](const auto& cell) {
+            const auto vertices = cell_vertices(current_, cell);
+            const double part = total_volume(cell_points(corners(position, current_, cell)));
+            total += part;
+            for (Vertex v : vertices) share_of_volume_[v] += part / static_cast<double>(vertices.size());
+        });
+        for (double& share : share_of_volume_) share /= total;
+    }
+
+    void add(const std::vector<double>& correction) {
+        for (std::size_t r = 0; r < numbering().vertex.size(); ++r) {
+            const Vertex v = numbering().vertex[r];
+            const double* const gained = correction.data() + block_size * r;
+            guess_.velocity[v] += Vec3{gained[0], gained[1], gained[2]};
+            guess_.pressure[v] += gained[3];
+        }
+    }
+
+    void take_matrix(const FlowStage& stage) {
+        if (!is_viscous(stage)) return solver_.take(nullptr);
+        const PressureScales scales = pressure_scales(stage);
+        solver_.take(&scales);
+    }
+
+    /// block_size per global row.
+    [[nodiscard]] std::vector<double> unknown() const {
+        std::vector<double> all;
+        all.reserve(block_size * numbering().vertex.size());
+        for (Vertex v : numbering().vertex) {
+            const Vec3& u = guess_.velocity[v];
+            all.insert(all.end(), {u.x, u.y, u.z, guess_.pressure[v]});
+        }
+        return all;
+    }
+
+    /// Does momentum pass several cells in the stage, by viscosity, somewhere?
+    [[nodiscard]] bool is_viscous(const FlowStage& stage) const {
+        if (stage.per_time == 0) return true;
+        double most = 0;
+        for_each_cell(blocks_.pattern.cells, [&](const auto& cell) {
+            const FlowMaterial& material = material_[cell_region(current_, cell)];
+            if (!material.densities.empty() || !material.viscosities.empty()) return;
+            const auto points = cell_points(corners(stage.position, current_, cell));
+            double squares = 0;
+            for (const auto& point : points)
+                for (const Vec3& g : point.volume_gradient) squares = std::max(squares, squared_norm(g / point.volume));
+            most = std::max(most, material.viscosity / material.density * squares / stage.per_time);
+        });
+        double all = 0;
+        MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, ranks_.communicator);
+        return all > viscous_share;
+    }
+
+    [[nodiscard]] PressureScales pressure_scales(const FlowStage& stage) const {
+        CellSystems systems;
+        ask_cells(blocks_.pattern.cells, [&](const auto& cell) {
+            const FlowMaterial& material = material_[cell_region(current_, cell)];
+            const auto vertices = cell_vertices(current_, cell);
+            const double density = mean_of(material.density, material.densities, vertices),
+                         viscosity = mean_of(material.viscosity, material.viscosities, vertices);
+            const double laplacian = stage.per_time > 0 ? 1 / (density * stage.per_time) : 0;
+            return pressure_cell(cell_points(corners(stage.position, current_, cell)), laplacian, 1 / viscosity);
+        }, [](const auto&) { return true; }, systems, ranks_.watch);
+        LinearSystem sums(rows());
+        add_cells(blocks_.pattern, systems, sums);
+        return {std::move(sums.value), std::move(sums.held)};
+    }
+    template <std::size_t n>
+    static double mean_of(double value, const Array<Vertex, double>& values, const std::array<Vertex, n>& vertices) {
+        if (values.empty()) return value;
+        double sum = 0;
+        for (Vertex v : vertices) sum += values[v];
+        return sum / static_cast<double>(n);
+    }
+
+    /// The residuals of momentum at all vertices, on all ranks.
+    [[nodiscard]] Array<Vertex, Vec3> reactions() const {
+        std::vector<double> all(3 * numbering().vertex.size(), 0.0);
+        for (std::size_t r = 0; r < rows().count(); ++r)
+            for (std::size_t m = 0; m < 3; ++m)
+                all[3 * (static_cast<std::size_t>(rows().first_row) + r) + m] = reaction_[block_size * r + m];
+        MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, ranks_.communicator);
+        Array<Vertex, Vec3> reaction(current_.position.size());
+        for (std::size_t r = 0; r < numbering().vertex.size(); ++r)
+            reaction[numbering().vertex[r]] = {all[3 * r], all[3 * r + 1], all[3 * r + 2]};
+        return reaction;
+    }
+
+    [[nodiscard]] double largest_courant() const {
+        if (steady()) return 0;
+        const std::array<Array<Vertex, double>, 6> none;
+        const FlowStage stage{current_, current_.position, mesh_velocity_, guess_.velocity, guess_, material_,
+                              conditions_.open, none, {}, 0, true};
+        double most = 0, all = 0;
+        for_each_cell(blocks_.pattern.cells,
+                      [&](const auto& cell) { most = std::max(most, crossing_rate(stage, cell)); });
+        MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, ranks_.communicator);
+        return dt_ * all;
+    }
+
+    const Ranks& ranks_;
+    const Mesh &before_, &current_;
+    const FlowOptions& options_;
+    const FlowState& start_;
+    double t_, dt_;
+    BlockPattern blocks_;
+    FlowBoundary boundary_;
+    FlowConditions conditions_;
+    Array<Region, FlowMaterial> material_;
+    FlowState guess_;
+    BlockSystem system_;
+    std::vector<double> reaction_;  // the residual of the last assembly, as it is
+    Array<Vertex, double> share_of_volume_;
+    Array<Vertex, Vec3> mesh_velocity_;
+    FlowSolver solver_;
+    int passes_ = 0;
+    double largest_left_ = 0;  // the first residual of a stage, the larger of both
+    double error_ = 0;
+};
+
+}  // namespace
+
+FlowReport step_flow(const Ranks& ranks, const Mesh& before, const Mesh& current, const FlowOptions& options,
+                     FlowState& state, double t, double dt, const Array<Vertex, double>& temperature) {
+    check_flow(options, current);
+    if (!(dt > 0 && std::isfinite(dt))) throw CaseError(options.key + ": dt must be positive, got " + std::to_string(dt));
+    FlowSolution solution(ranks, before, current, options, state, t, dt, temperature);
+    solution.solve_all();
+    FlowReport report = solution.report();
+    state = solution.state();
+    return report;
+}
+
+}  // namespace kropla

@@ -1,0 +1,133 @@
+// What the method has exactly: uniform flows and linear pressures, on meshes of tets and prisms that move anyhow.
+#include "flow_problems.h"
+#include "session.h"
+#include <kropla/base/error.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+/// `on` its way, 0 to 5, all but the body's surface shaken.
+Mesh place_at(const Mesh& start, double on, std::uint64_t seed) {
+    const double s = std::sin(1.3 * on);
+    return moved(start, {0.06 * s, -0.03 * on / 4, 0.08 * s * s}, 0.05 * on, 0.004, seed);
+}
+Mesh place_at_step(const Mesh& start, int step) { return place_at(start, step, 100u + unsigned(step)); }
+
+double largest_difference(const Mesh& mesh, const FlowState& state, const Vec3& velocity) {
+    double largest = 0;
+    for (Vertex v : mesh.position.indices())
+        if (alive(mesh, v)) largest = std::max(largest, distance(state.velocity[v], velocity));
+    return largest;
+}
+
+void set_velocity(FlowState& state, const Vec3& velocity) {
+    for (Vec3& u : state.velocity) u = velocity;
+}
+
+TEST(FlowExact, AUniformFlowIsKeptOnAnyMovingMesh) {
+    const Vec3 wind{3, -1, 2};
+    const Mesh start = cube_with_layers(8, true);
+    FlowOptions options = fluid(1.6, 2e-3, uniform(wind));
+    options.regions.push_back(FlowRegion{.density = 7000, .viscosity = 5e-3});
+    options.tolerance = 1e-12;
+    for (FlowScheme scheme : {FlowScheme::second_order, FlowScheme::first_order}) {
+        options.scheme = scheme;
+        FlowState state = still_flow(start);
+        set_velocity(state, wind);
+        Mesh before = place_at_step(start, 0);
+        for (int step = 1; step <= 3; ++step) {
+            const Mesh current = place_at_step(start, step);
+            const FlowReport report = step_flow(petsc().all_ranks(), before, current, options, state, 0.01 * step, 0.01);
+            EXPECT_LT(largest_difference(current, state, wind) / norm(wind), 1e-12) << "step " << step;
+            EXPECT_LT(std::abs(report.net_flux), 1e-13 * norm(wind));
+            EXPECT_NEAR(report.face_flux[1], 3, 1e-12);
+            EXPECT_GT(report.largest_courant, 0.1);
+            before = current;
+        }
+    }
+}
+
+// Against it: what is left of a wind that is not there at the start, by the same steps.
+TEST(FlowExact, AUniformFlowIsFoundFromRest) {
+    const Vec3 wind{3, -1, 2};
+    const Mesh mesh = cube_with_layers(8, true);
+    FlowOptions options = fluid(1, 1, uniform(wind));
+    options.regions.push_back(options.regions[0]);
+    options.scheme = FlowScheme::steady;
+    options.tolerance = 1e-11;
+    FlowState state = still_flow(mesh);
+    const FlowReport report = step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 1);
+    EXPECT_LT(largest_difference(mesh, state, wind) / norm(wind), 1e-9);
+    RecordProperty("iterations", report.iterations);
+}
+
+TEST(FlowExact, HydrostaticPressureIsLinear) {
+    const Mesh start = cube_with_layers(8, false);
+    FlowOptions options{.regions = {FlowRegion{.density = 1000, .viscosity = 1e-3}, {}}};
+    options.gravity = {1, 2, -9.81};
+    options.tolerance = 1e-12;
+    FlowState state = still_flow(start);
+    const Mesh mesh = place_at_step(start, 0);
+    const FlowReport report = step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 0.1);
+    const double top = 1000 * norm(options.gravity);
+    const auto exact = [&](const Vec3& x) { return 1000 * dot(options.gravity, x - Vec3{0.5, 0.5, 0.5}); };
+    EXPECT_LT(largest_difference(mesh, state, {}), 1e-9);
+    double mean = 0;
+    for (Vertex v : vertices_of(mesh, surroundings).indices()) mean = std::max(mean, state.velocity[v].x);
+    const double shift = state.pressure[Vertex{0}] - exact(mesh.position[Vertex{0}]);
+    EXPECT_LT(pressure_error(mesh, state, [&](const Vec3& x) { return exact(x) + shift; }) / top, 1e-9);
+    ASSERT_EQ(report.bodies.size(), 1u);
+    const Vec3 buoyancy = -1000 * 0.35 * 0.35 * 0.35 * options.gravity;  // what the body displaces, after its layer
+    EXPECT_LT(distance(report.bodies[0].force, buoyancy) / norm(buoyancy), 1e-8);
+    EXPECT_LT(norm(report.bodies[0].torque) / norm(buoyancy), 1e-8);
+}
+
+// All is carried along: the velocity is uniform, and the pressure balances what accelerates it.
+double pressure_error_of_frame(const FlowScheme scheme, int steps) {
+    const Mesh start = cube_with_layers(4, true);
+    const auto speed = [](double t) { return std::sin(3 * t) + t * t; };
+    const auto rise = [](double t) { return 3 * std::cos(3 * t) + 2 * t; };
+    FlowOptions options = fluid(2, 0.1, velocity_of([&](const Vec3&, double t) { return Vec3{0, 0, speed(t)}; }));
+    options.regions.push_back(options.regions[0]);
+    options.gravity = {0, 0, -9.81};
+    options.scheme = scheme;
+    options.tolerance = 1e-11;
+    FlowState state = still_flow(start);
+    Mesh before = place_at_step(start, 0);
+    for (int step = 1; step <= steps; ++step) {
+        const Mesh current = place_at(start, 5.0 * step / steps, unsigned(step));
+        step_flow(petsc().all_ranks(), before, current, options, state, (step - 1.0) / steps, 1.0 / steps);
+        EXPECT_LT(largest_difference(current, state, {0, 0, speed(1.0 * step / steps)}), 1e-8);
+        before = current;
+    }
+    return pressure_error(before, state, [&](const Vec3& x) { return -2 * (rise(1) + 9.81) * (x.z - 0.5); });
+}
+
+TEST(FlowExact, AnAcceleratingFrameHasALinearPressure) {
+    const double a = pressure_error_of_frame(FlowScheme::second_order, 10),
+                 b = pressure_error_of_frame(FlowScheme::second_order, 20);
+    RecordProperty("errors", std::to_string(a) + " " + std::to_string(b));
+    EXPECT_LT(a, 0.1);
+    EXPECT_GT(a / b, 3.5);
+}
+
+TEST(FlowExact, WhatFlowsInNeedsAWayOut) {
+    const Mesh mesh = unit_cube(4);
+    FlowOptions options = fluid(1, 1, {});
+    options.faces.fill({});
+    options.faces[0] = {.kind = FlowFace::Kind::velocity, .velocity = uniform({1, 0, 0})};
+    FlowState state = still_flow(mesh);
+    EXPECT_THROW(step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 0.1), CaseError);
+    options.faces[1] = {.kind = FlowFace::Kind::open};
+    const FlowReport report = step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 0.1);
+    EXPECT_LT(report.face_flux[0], -0.5);
+    EXPECT_NEAR(report.face_flux[1] / report.face_flux[0], -1, 1e-3);
+}
+
+}  // namespace
+}  // namespace kropla
