@@ -198,7 +198,7 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
                      NodalField& temperature, double t, double dt);
 
 /// The same in a flow that is known, as `material_flow` gives it for the regions that are `at_rest`. At faces of the box it
-/// brings in what is there: the face's value, or else the temperature at the face as it is.
+/// brings in what is there: the face's value, or else the temperature that the face had at the step's begin.
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      const MaterialFlow& flow, NodalField& temperature, double t, double dt);
 

@@ -30,8 +30,7 @@ constexpr double of_range = 1e-11;   // [-] of the range, and
 constexpr double of_largest = 1e-12; // [-] of the largest temperature: what a solution leaves
 constexpr double exact = 1e-13;         // [-] the solver's tolerance, and
 constexpr double enough_to_look = 1e-8;  // [-] where a new extremum of a noticeable share is all that is looked for
-constexpr double settled = 2e-11;  // [-] of the largest temperature: a pass that changes less is the last; what is left of
-                                   //   the balance is the square of it, where a curve bends that share at a vertex
+constexpr double settled = 1e-12;  // [-] of the largest temperature: a pass that changes less is the last
 
 Array<Region, Array<Vertex, Vec3>> carry_bodies(const Mesh& before, const Mesh& current, const HeatOptions& options) {
     Array<Region, Array<Vertex, Vec3>> carried(options.regions.size());
@@ -308,7 +307,8 @@ private:
         }
     }
 
-    /// What the flow takes out of the box has the temperature that is there; so has what it brings in.
+    /// What the flow takes out of the box has the temperature that is there; what it brings in, that of the step's begin:
+    /// with the one at its end, the gas beyond would follow what is downstream.
     void add_through(LinearSystem& system) const {
         for (const auto& [v, region, face, rate] : step_.flow.through) {
             const int row = row_of(v, region);
@@ -317,6 +317,10 @@ private:
             const Enthalpy& h = step_.enthalpy[region];
             const MaterialState& state = step_.material[region];
             const double taken = step_.dt * rate, slope = h.proportional() ? h.slope(0) : state.slope[v];
+            if (rate < 0) {
+                system.right[r] -= taken * h(step_.old_temperature[v]);
+                continue;
+            }
             system.row_sum[r] += taken * slope;
             if (!h.proportional()) system.right[r] += taken * (slope * step_.guess[v] - state.enthalpy[v]);
         }
@@ -383,7 +387,8 @@ private:
         }
         for (const auto& [v, region, face, rate] : step_.flow.through) {
             if (row_of(v, region) < 0) continue;
-            const double in = -step_.dt * rate * step_.enthalpy[region](solved_[v]);
+            const double temperature = rate < 0 ? step_.old_temperature[v] : solved_[v];
+            const double in = -step_.dt * rate * step_.enthalpy[region](temperature);
             acting[v] += in;
             sum.faces[face] += in;
         }
