@@ -48,10 +48,13 @@ const Mesh& Attempt::reference() const { return right_.step().reference(); }
 const Mesh& Attempt::before() const { return right_.step().before(); }
 const Changes& Attempt::refined() const { return right_.step().statistics().refined; }
 
-MovedAttempt::MovedAttempt(Attempt&& attempt, double end) : right_(std::move(attempt.right_)) {
-    perform(right_, [end](MeshStep& step) {
+MovedAttempt::MovedAttempt(Attempt&& attempt, double end, std::span<const BodyPlace> places)
+    : right_(std::move(attempt.right_)) {
+    perform(right_, [end, places](MeshStep& step) {
         if (!(end > step.time())) throw std::logic_error("a step ends after it begins");
-        step.move_boundary(end);
+        step.aim_at(end);
+        step.correct(places);
+        step.move_boundary();
         step.optimise();
     });
 }
@@ -63,7 +66,7 @@ std::optional<Refusal> MovedAttempt::refusal() const { return right_.step().refu
 void MovedAttempt::move_again(std::span<const BodyPlace> places) {
     perform(right_, [places](MeshStep& step) {
         step.correct(places);
-        step.move_boundary(step.target_time());
+        step.move_boundary();
         step.optimise();
     });
 }
@@ -79,7 +82,9 @@ const Mesh& RemeshedAttempt::current() const { return right_.step().current(); }
 const Changes& RemeshedAttempt::remeshed() const { return right_.step().statistics().remeshed; }
 const StepStatistics& RemeshedAttempt::statistics() const { return right_.step().statistics(); }
 
-MovedAttempt move_bodies(Attempt&& attempt, double end) { return {std::move(attempt), end}; }
+MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places) {
+    return {std::move(attempt), end, places};
+}
 
 void refuse(MovedAttempt&& attempt) {
     const MovedAttempt ended = std::move(attempt);

@@ -71,9 +71,9 @@ public:
 
 private:
     friend class RemeshedAttempt;
-    friend MovedAttempt move_bodies(Attempt&& attempt, double end);
+    friend MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places);
     friend void refuse(MovedAttempt&& attempt);
-    MovedAttempt(Attempt&& attempt, double end);
+    MovedAttempt(Attempt&& attempt, double end, std::span<const BodyPlace> places);
     AttemptRight right_;
 };
 
@@ -93,8 +93,9 @@ private:
     AttemptRight right_;
 };
 
-/// Takes the bodies to where they are at `end` [s]. Throws std::logic_error if that is not after the step's start.
-[[nodiscard]] MovedAttempt move_bodies(Attempt&& attempt, double end);
+/// Takes the bodies to where they are at `end` [s]: these to their places, as `move_again` does, all others as their
+/// motions say. Throws std::logic_error if that is not after the step's start.
+[[nodiscard]] MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places = {});
 /// Ends the attempt; if the mesh stopped it, the next one will be remeshed where it got stuck.
 void refuse(MovedAttempt&& attempt);
 /// Throws std::logic_error if the attempt is to be refused.

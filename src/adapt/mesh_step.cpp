@@ -157,9 +157,9 @@ Changes MeshStep::refine_by_paper() {
     return remesh_clusters(current_, cells, std::min(options_.floor, trouble_floor), at_time, options);
 }
 
-void MeshStep::move_boundary(double t) {
+void MeshStep::move_boundary() {
     heed(options_.watch);
-    target_time_ = t;
+    const double t = target_time_;
     stuck_ = turned_too_far();
     if (stuck_) return;
     statistics_.legs = 1;
@@ -176,6 +176,7 @@ void MeshStep::correct(std::span<const BodyPlace> places) {
         known->second.step = step;
         domain_.bodies[body].motion = corrected(planned_[body], step);
     }
+    if (places.empty()) return;
     copy_changed(current_, before_, {}, moved_);
     way_ = {};
 }

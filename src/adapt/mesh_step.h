@@ -12,7 +12,7 @@ namespace kropla {
 /// order and guarded by them.
 ///
 ///     begin_step(); refine();                       // 2.1, 2.2
-///     move_boundary(t + dt); optimise();            // 2.3, 2.4
+///     aim_at(t + dt); move_boundary(); optimise();  // 2.3, 2.4
 ///     if (refusal()) refuse();                      // the reference is as it was; the next refine() knows where it stuck
 ///     else { remesh(); accept(); }                  // 2.6
 class MeshStep {
@@ -34,8 +34,10 @@ public:
     /// After a refusal, remeshes where the motion got stuck; else does nothing. The solution is to be carried
     /// from reference() to before() at the vertices that are returned.
     const Changes& refine();
-    /// Moves bodies to where they are at `t` [s], and their surroundings with them.
-    void move_boundary(double t);
+    /// The step is to end at `t` [s].
+    void aim_at(double t) { target_time_ = t; }
+    /// Moves bodies to where they are at its end, and their surroundings with them.
+    void move_boundary();
     /// Optimises the places of the surroundings' vertices; if a cell would be turned over on the way, goes it again in
     /// as many legs as it takes for all cells to stay valid.
     void optimise();

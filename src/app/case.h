@@ -2,7 +2,9 @@
 
 #include <kropla/adapt/adapt.h>
 #include <kropla/domain/domain.h>
+#include <kropla/simulate/flow.h>
 #include <kropla/simulate/heat.h>
+#include <kropla/simulate/rigid_motion.h>
 #include <kropla/simulate/species.h>
 
 #include <array>
@@ -27,6 +29,7 @@ struct QualityPlan {
 struct TimePlan {
     double end = 0;  // [s], positive
     int steps = 1;   // wanted, at least 1; a step may be cut, the sum is kept
+    std::optional<double> courant = {};  // [-] if given, steps are cut so that the flow crosses no more heights of cells
 };
 
 struct OutputPlan {
@@ -44,24 +47,37 @@ struct Parameter {
     bool used = false;  // by an expression of the case
 };
 
-/// How the user put what the structs of a case hold in another form, each as a TOML value: `300`, `"-1.0*t"`,
-/// `{ flux = 1e4 }`. Empty: not given.
+/// Keys and their values, as a TOML value is written: `300`, `"-1.0*t"`, `{ flux = 1e4 }`.
+using WrittenKeys = std::vector<std::pair<std::string, std::string>>;
+
+/// How the user put what the structs of a case hold in another form, each as a TOML value. Empty: not given.
 struct WrittenBody {
     std::string shape;  // "sphere" or "ellipsoid", without quotes
     std::string rotation;
-    std::array<std::string, 3> motion;  // all empty: at rest
+    std::array<std::string, 3> motion;  // all empty: at rest, or free
+    WrittenKeys free;                   // its motion, if it goes where forces take it
     std::string angle, axis;            // of the motion; both empty: it does not turn
 };
-using WrittenKeys = std::vector<std::pair<std::string, std::string>>;  // each key and its value
 struct WrittenHeat {
     std::vector<WrittenKeys> regions;   // per region
     std::vector<WrittenKeys> surfaces;  // per body
     std::array<std::string, 6> faces;   // per face of the box
 };
+struct WrittenFlow {
+    WrittenKeys general;
+    std::vector<WrittenKeys> regions;  // per region
+    std::array<std::string, 6> faces;  // per face of the box
+};
 struct WrittenSpecies {
     std::vector<WrittenKeys> regions;   // per region
     std::vector<WrittenKeys> surfaces;  // per body
     WrittenKeys faces;
+};
+
+/// What flows, and how it begins.
+struct FlowPlan {
+    FlowOptions options;
+    std::vector<VectorQuantity> initial;  // [m/s] per region
 };
 
 /// All that a run is told, SI units.
@@ -71,12 +87,15 @@ struct Case {
     TimePlan time;
     std::optional<HeatOptions> heat;  // nothing: the mesh moves, nothing is simulated
     std::vector<Species> species;
+    std::optional<FlowPlan> flow;  // nothing: the surroundings rest, but for making way
+    std::vector<std::optional<FreeMotion>> free;  // per body: goes where forces take it
     OutputPlan output;
     RandomSeed random;
 
     std::vector<WrittenBody> written_bodies;  // per body
     WrittenHeat written_heat;
     std::vector<WrittenSpecies> written_species;
+    WrittenFlow written_flow;
     std::vector<Parameter> parameters;
     std::map<std::string, std::string> written_numbers;  // by full key, as TOML: those that are expressions of parameters
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 namespace kropla {
 namespace {
@@ -84,8 +85,46 @@ void read_turn(const CaseTable& table, Path& path, WrittenBody& written) {
     written.axis = fmt::format("[{}]", fmt::join(parts, ", "));
 }
 
-Motion read_motion(const CaseTable& table, WrittenBody& written) {
-    table.allow({"x", "y", "z", "angle", "axis"});
+/// Along and about which axes a body is held.
+SixVector read_hold(const CaseTable& table, WrittenKeys& written) {
+    constexpr std::array<std::string_view, 6> words = {"x", "y", "z", "turn_x", "turn_y", "turn_z"};
+    SixVector free = {1, 1, 1, 1, 1, 1};
+    std::vector<std::string> held;
+    for (const std::string& word : table.texts("hold", "names of what is held: x, y, z, turn, turn_x, turn_y, turn_z")) {
+        const auto at = static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
+        if (at < 6) free[at] = 0;
+        else if (word == "turn") free[3] = free[4] = free[5] = 0;
+        else table.refuse_value("hold", "must be of x, y, z, turn, turn_x, turn_y and turn_z");
+        held.push_back(toml_text(word));
+    }
+    written.emplace_back("hold", fmt::format("[{}]", fmt::join(held, ", ")));
+    return free;
+}
+
+FreeMotion read_free(const CaseTable& table, WrittenKeys& written) {
+    table.allow({"kind", "density", "velocity", "spin", "hold"});
+    FreeMotion motion;
+    motion.density = table.positive("density");
+    written.emplace_back("density", toml_number(motion.density));
+    for (const auto& [key, what, vector] : {std::tuple{"velocity", "[u, v, w] [m/s]", &motion.velocity},
+                                            std::tuple{"spin", "[x, y, z] [rad/s]", &motion.spin}}) {
+        if (!table.has(key)) continue;
+        const std::vector<double> v = table.numbers(key, 3, what);
+        *vector = {v[0], v[1], v[2]};
+        written.emplace_back(key, fmt::format("[{}, {}, {}]", v[0], v[1], v[2]));
+    }
+    if (table.has("hold")) motion.free = read_hold(table, written);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (motion.free[as_size(axis)] == 0 && motion.velocity[axis] != 0)
+            table.refuse("hold", fmt::format("holds {}, along which velocity is not zero", coordinates[as_size(axis)]));
+        if (motion.free[as_size(axis) + 3] == 0 && motion.spin[axis] != 0)
+            table.refuse("hold", fmt::format("holds turn_{}, about which spin is not zero", coordinates[as_size(axis)]));
+    }
+    return motion;
+}
+
+Motion read_path(const CaseTable& table, WrittenBody& written) {
+    table.allow({"kind", "x", "y", "z", "angle", "axis"});
     Path path;
     for (std::size_t i = 0; i < 3; ++i) {
         const Formula formula = table.has(coordinates[i]) ? table.formula(coordinates[i], Variables::time)
@@ -149,7 +188,14 @@ void read_bodies(const CaseTable& file, Case& it) {
         table.allow({"name", "shape", "centre", "radius", "axes", "rotation", "motion", "layer"});
         WrittenBody written;
         Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
-        if (table.has("motion")) body.motion = read_motion(table.table("motion"), written);
+        it.free.emplace_back();
+        if (table.has("motion")) {
+            const CaseTable motion = table.table("motion");
+            const std::string kind = motion.has("kind") ? motion.text("kind") : "path";
+            if (kind == "free") it.free.back() = read_free(motion, written.free);
+            else if (kind == "path") body.motion = read_path(motion, written);
+            else motion.refuse_value("kind", "must be \"path\" or \"free\"");
+        }
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
         it.domain.bodies.push_back(std::move(body));
         it.written_bodies.push_back(std::move(written));

@@ -142,6 +142,25 @@ std::string CaseTable::text(std::string_view key) const {
     return *value;
 }
 
+bool CaseTable::truth(std::string_view key) const {
+    const auto value = node(key, "must be true or false").value_exact<bool>();
+    if (!value) refuse_value(key, "must be true or false");
+    return *value;
+}
+
+std::vector<std::string> CaseTable::texts(std::string_view key, std::string_view meaning) const {
+    const std::string must = fmt::format("must be texts in brackets, {}", meaning);
+    const toml::array* array = node(key, must).as_array();
+    if (array == nullptr) refuse_value(key, must);
+    std::vector<std::string> all;
+    for (const toml::node& item : *array) {
+        const auto text = item.value_exact<std::string>();
+        if (!text) refuse_value(key, must);
+        all.push_back(*text);
+    }
+    return all;
+}
+
 std::vector<double> CaseTable::numbers(std::string_view key, std::size_t count,
                                        std::string_view meaning) const {
     const std::string must = fmt::format("must be {} finite numbers {}", count, meaning);

@@ -66,11 +66,14 @@ public:
     /// From `least` to `most`.
     [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t least, std::int64_t most) const;
     [[nodiscard]] std::string text(std::string_view key) const;
+    [[nodiscard]] bool truth(std::string_view key) const;
     /// Three coordinates [m], up to `most_length` on either side of 0.
     [[nodiscard]] Vec3 place(std::string_view key) const;
     /// As many finite numbers; `meaning` names them in a refusal.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count,
                                               std::string_view meaning) const;
+    /// Texts in brackets, as many as there are; `meaning` names them in a refusal.
+    [[nodiscard]] std::vector<std::string> texts(std::string_view key, std::string_view meaning) const;
     /// As many as there are.
     [[nodiscard]] std::vector<double> all_numbers(std::string_view key, std::string_view meaning) const;
     /// Finite at t = 0 and `probe`; of the temperature, anything.

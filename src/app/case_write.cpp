@@ -20,6 +20,12 @@ std::string line(const Case& it, const std::string& table, std::string_view key,
 
 std::string vec3(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
+std::string keys(const Case& it, const std::string& table, const WrittenKeys& written) {
+    std::string text;
+    for (const auto& [key, value] : written) text += line(it, table, key, value);
+    return text;
+}
+
 std::string layer(const Case& it, const LayerOptions& layer, const std::string& table) {
     return "[body.layer]\n" + line(it, table, "count", layer.count) +
            line(it, table, "first_height", layer.first_height) + line(it, table, "growth", layer.growth) +
@@ -41,14 +47,9 @@ std::string body(const Case& it, std::size_t number) {
     }
     const auto& [x, y, z] = written.motion;
     if (!x.empty()) text += fmt::format("[body.motion]\nx = {}\ny = {}\nz = {}\n", x, y, z);
+    if (!written.free.empty()) text += "[body.motion]\nkind = \"free\"\n" + keys(it, table + ".motion", written.free);
     if (!written.angle.empty()) text += fmt::format("angle = {}\naxis = {}\n", written.angle, written.axis);
     if (body.layer) text += layer(it, *body.layer, table + ".layer");
-    return text;
-}
-
-std::string keys(const Case& it, const std::string& table, const WrittenKeys& written) {
-    std::string text;
-    for (const auto& [key, value] : written) text += line(it, table, key, value);
     return text;
 }
 
@@ -83,6 +84,19 @@ std::string species(const Case& it, std::size_t number) {
     return text;
 }
 
+std::string flow(const Case& it) {
+    const WrittenFlow& written = it.written_flow;
+    std::string text = "\n[flow]\n" + keys(it, "flow", written.general);
+    for (std::size_t r = 0; r < written.regions.size(); ++r) {
+        const std::string name = region_name(it.domain, r);
+        if (!written.regions[r].empty())
+            text += fmt::format("\n[flow.region.{}]\n", toml_text(name)) + keys(it, "flow.region." + name, written.regions[r]);
+    }
+    text += "\n[flow.face]\n";
+    for (std::size_t f = 0; f < face_keys.size(); ++f) text += fmt::format("{} = {}\n", face_keys[f], written.faces[f]);
+    return text;
+}
+
 std::string quality(const Case& it) {
     const QualityPlan& plan = it.quality;
     const std::string text = "\n[quality]\n" + line(it, "quality", "max_aspect_ratio", plan.max_aspect_ratio);
@@ -111,8 +125,10 @@ std::string to_toml(const Case& it) {
             line(it, "size", "far", size.far);
     text += quality(it);
     text += "\n[time]\n" + line(it, "time", "end", it.time.end) + line(it, "time", "steps", it.time.steps);
+    if (it.time.courant) text += line(it, "time", "courant", *it.time.courant);
     if (it.heat) text += heat(it);
     for (std::size_t s = 0; s < it.species.size(); ++s) text += species(it, s);
+    if (it.flow) text += flow(it);
     text += "\n[output]\n" + line(it, "output", "every", it.output.every);
     return text + "\n[random]\n" + line(it, "random", "seed", it.random.seed);
 }

@@ -13,12 +13,32 @@ Vec3 probe_of(const Box& box) {
     return box.min + Vec3{0.37 * span.x, 0.41 * span.y, 0.43 * span.z};
 }
 
+namespace {
+
+Quantity quantity_of(const Formula& formula) {
+    if (!formula.written.starts_with('"')) return Constant{formula.value(0)};
+    return [f = formula.value](const Vec3& place, double t) { return f(t, place); };
+}
+
+}  // namespace
+
 Quantity NotedTable::quantity(std::string_view key) {
     if (!table_.has(key)) return {};
     const Formula formula = table_.formula(key, Variables::time_and_place, probe_);
     written_.emplace_back(key, formula.written);
-    if (!formula.written.starts_with('"')) return Constant{formula.value(0)};
-    return [f = formula.value](const Vec3& place, double t) { return f(t, place); };
+    return quantity_of(formula);
+}
+
+VectorQuantity NotedTable::vector(std::string_view key, std::string_view meaning) {
+    VectorQuantity read;
+    if (!table_.has(key)) return read;
+    std::vector<std::string> words;
+    for (const Formula& formula : table_.formulas(key, 3, meaning, Variables::time_and_place)) {
+        read[words.size()] = quantity_of(formula);
+        words.push_back(formula.written);
+    }
+    written_.emplace_back(key, fmt::format("[{}]", fmt::join(words, ", ")));
+    return read;
 }
 
 double NotedTable::number(std::string_view key) {

@@ -3,6 +3,7 @@
 #include "app/case.h"
 #include "app/case_property.h"
 #include "app/case_table.h"
+#include <kropla/simulate/flow.h>
 
 #include <string>
 #include <string_view>
@@ -26,6 +27,8 @@ public:
     /// A number or an expression of t, x, y and z; empty if the key is not there.
     Quantity quantity(std::string_view key);
     double number(std::string_view key);
+    /// Three of them; empty if the key is not there. `meaning` names them in a refusal.
+    VectorQuantity vector(std::string_view key, std::string_view meaning);
     Property property(std::string_view key, double usual_temperature);
     void note(std::string_view key, std::string written) { written_.emplace_back(key, std::move(written)); }
 

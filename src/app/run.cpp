@@ -5,6 +5,7 @@
 #include "app/case.h"
 #include "app/commands.h"
 #include "app/ending.h"
+#include "app/flow_fields.h"
 #include "app/foresight.h"
 #include "app/interrupt.h"
 #include "app/run_folder.h"
@@ -48,7 +49,16 @@ State start(const Case& it, const Ranks& ranks) {
         fields.push_back(initial_temperature(ranks, mesh, *it.heat));
     }
     std::ranges::move(initial_species(mesh, it), std::back_inserter(fields));
-    return {MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it, watch)), std::move(fields)};
+    if (it.flow) {
+        check_flow(it.flow->options, mesh);
+        std::ranges::move(initial_flow(mesh, it), std::back_inserter(fields));
+    }
+    State state{MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it, watch)), std::move(fields), {}};
+    for (const auto& motion : it.free) {
+        state.free.emplace_back();
+        if (motion) state.free.back() = {.pose = {}, .velocity = motion->velocity, .spin = motion->spin};
+    }
+    return state;
 }
 
 /// How far a run is.
@@ -71,6 +81,47 @@ bool is_framed(const Place& place, const Case& it) {
 
 constexpr const char* steps_given_name = "steps_given";
 
+/// What a checkpoint keeps of a free body, by name.
+template <class State, class Visit>
+void for_each_number(State& state, std::size_t body, const Visit& visit) {
+    const std::string name = fmt::format("body {} ", body);
+    const auto vector = [&](const char* what, auto& v) {
+        for (int axis = 0; axis < 3; ++axis) visit(fmt::format("{}{} {}", name, what, axis), v[axis]);
+    };
+    vector("displacement", state.pose.displacement);
+    for (std::size_t axis = 0; axis < 3; ++axis) vector(axis == 0 ? "x axis" : axis == 1 ? "y axis" : "z axis", state.pose.rotation.axes[axis]);
+    vector("velocity", state.velocity);
+    vector("spin", state.spin);
+    for (std::size_t i = 0; i < 6; ++i) {
+        visit(fmt::format("{}rate {}", name, i), state.rate[i]);
+        for (std::size_t j = 0; j < 6; ++j) visit(fmt::format("{}response {} {}", name, i, j), state.response[i][j]);
+    }
+}
+
+std::map<std::string, double> values_of(const std::vector<FreeState>& free) {
+    std::map<std::string, double> values;
+    for (std::size_t body = 0; body < free.size(); ++body)
+        if (free[body].knows_response)
+            for_each_number(free[body], body, [&](const std::string& name, double value) { values[name] = value; });
+    return values;
+}
+
+std::vector<FreeState> free_states(const Case& it, const std::map<std::string, double>& values) {
+    std::vector<FreeState> free(it.free.size());
+    for (std::size_t body = 0; body < free.size(); ++body) {
+        if (!it.free[body]) continue;
+        free[body].velocity = it.free[body]->velocity;
+        free[body].spin = it.free[body]->spin;
+        for_each_number(free[body], body, [&](const std::string& name, double& value) {
+            const auto known = values.find(name);
+            if (known == values.end()) return;
+            value = known->second;
+            free[body].knows_response = true;
+        });
+    }
+    return free;
+}
+
 /// Makes the case one with which the run goes on.
 Place resume(Case& it, const RunOptions& options, const Watch* watch) {
     Checkpoint saved = read_checkpoint(options.out / checkpoint_name);
@@ -79,8 +130,12 @@ Place resume(Case& it, const RunOptions& options, const Watch* watch) {
     const double had = known != saved.values.end() ? known->second : 0;
     go_on_with(it, {saved.case_text, static_cast<int>(had), saved.time}, options.case_file.string(),
                options.out.string());
-    Place place{{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it, watch)),
-                 std::move(saved.fields)},
+    std::vector<FreeState> free = free_states(it, saved.values);
+    Domain domain = it.domain;
+    for (std::size_t body = 0; body < free.size(); ++body)
+        if (it.free[body]) domain.bodies[body].motion = [pose = free[body].pose](double) { return pose; };
+    Place place{{MovingMesh(domain, std::move(saved.mesh), saved.time, adapt_options(it, watch)),
+                 std::move(saved.fields), std::move(free)},
                 saved.step,
                 saved.next_dt,
                 given};
@@ -89,13 +144,15 @@ Place resume(Case& it, const RunOptions& options, const Watch* watch) {
 }
 
 Checkpoint checkpoint_of(const Place& place, const Case& it) {
+    std::map<std::string, double> values = values_of(place.state.free);
+    values.emplace(steps_given_name, place.steps_given);
     return {.mesh = place.state.moving.reference(),
             .fields = place.state.fields,
             .time = place.state.moving.time(),
             .next_dt = place.next_dt,
             .step = place.step,
             .case_text = to_toml(it),
-            .values = {{steps_given_name, place.steps_given}}};
+            .values = std::move(values)};
 }
 
 /// The way to the next of the wanted times, or as much of it as `next_dt` allows.
@@ -123,6 +180,8 @@ public:
             ++place_.step;
             is_saved_ = false;
             place_.next_dt = std::min(wanted, next_dt(report.mesh, place_.next_dt));
+            if (const double c = report.flow.largest_courant; it_.time.courant && c > 0)
+                place_.next_dt = std::min(place_.next_dt, *it_.time.courant / c * report.mesh.dt);
             write(report, begin);
         }
     }

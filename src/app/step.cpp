@@ -1,14 +1,19 @@
 #include "app/step.h"
 
 #include "app/case_heat.h"
+#include "app/flow_fields.h"
 #include "app/species_fields.h"
 #include "simulate/cells.h"
 #include <kropla/simulate/heat.h>
+
+#include <kropla/base/error.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -65,6 +70,9 @@ public:
         if (it.heat) carry_heat();
         for (const SpeciesField& field : species_fields(it))
             fields_.per_vertex(state.fields[field.place].values, {.only = Region(field.region)});
+        if (!it.flow) return;
+        for (std::size_t k = 0; k < 4; ++k)
+            fields_.per_vertex(state.fields[place_of_flow(it) + k].values, {.only = Region(0), .limit = false});
     }
 
     Advanced advance(const StepOptions& options, std::function<void(const Mesh&)> last_look = {}) {
@@ -72,9 +80,18 @@ public:
         if (it_.heat) how.contents = {[&](const Mesh& mesh) { return energy_on(mesh); }};
         for (std::size_t s = 0; s < it_.species.size(); ++s)
             how.contents.push_back([&, s](const Mesh& mesh) { return energy_of(mesh, concentrations(it_, s, state_.fields)); });
-        Advanced done = kropla::advance(state_.moving, fields_, options.dt,
-                                        [&](const StepToSolve& step) { return solve(step); }, how);
+        how.expected = [&](double end) { return free_places(end); };
+        Advanced done = [&] {
+            try {
+                return kropla::advance(state_.moving, fields_, options.dt,
+                                       [&](const StepToSolve& step) { return solve(step); }, how);
+            } catch (const StuckError&) {
+                if (unsolved_.empty()) throw;
+                throw SolverError(unsolved_);
+            }
+        }();
         if (it_.heat) finish_heat(done);
+        for (const auto& [body, step] : free_) state_.free[body] = step.end();
         return done;
     }
 
@@ -111,10 +128,76 @@ private:
     }
 
     Answer solve(const StepToSolve& step) {
+        unsolved_.clear();
+        Array<Vertex, Vec3> velocity;
+        if (it_.flow) {
+            const Answer answer = solve_flow(step, velocity);
+            if (!std::holds_alternative<Solved>(answer)) return answer;
+        }
         if (!it_.heat && it_.species.empty()) return Solved{};
-        flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt);
+        flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt,
+                              velocity);
         if (it_.heat) solve_heat(step);
         for (std::size_t s = 0; s < it_.species.size(); ++s) solve_species(step, s);
+        return Solved{};
+    }
+
+    /// Where free bodies are expected, if they go on as in the step before.
+    std::vector<BodyPlace> free_places(double end) {
+        free_.clear();
+        const MovingMesh& moving = state_.moving;
+        const double dt = end - moving.time();
+        for (std::size_t body = 0; body < it_.free.size(); ++body) {
+            if (!it_.free[body]) continue;
+            const FreeMotion& motion = *it_.free[body];
+            const FlowRegion& around = *it_.flow->options.regions[0];
+            RigidStep& step = free_.emplace_back(body, RigidStep(motion, state_.free[body],
+                                                                 weighed(moving.reference(), region_of_body(body), motion.density),
+                                                                 it_.domain.bodies[body].shape.centre + state_.free[body].pose.displacement,
+                                                                 it_.flow->options.gravity, moving.time(), dt)).second;
+            step.guess_response(around.density(0), around.viscosity(0));
+        }
+        return places();
+    }
+    [[nodiscard]] std::vector<BodyPlace> places() const {
+        std::vector<BodyPlace> places;
+        for (const auto& [body, step] : free_) places.push_back({body, step.pose()});
+        return places;
+    }
+
+    /// The velocities of the surfaces of bodies.
+    [[nodiscard]] std::vector<std::function<RigidVelocity(double)>> surface_velocities(double dt) const {
+        std::vector<std::function<RigidVelocity(double)>> velocities;
+        for (const Body& body : it_.domain.bodies)
+            velocities.push_back([&body, dt](double t) { return velocity_of(body, t, dt); });
+        for (const auto& [body, step] : free_) velocities[body] = [&step = step](double t) { return step.velocity(t); };
+        return velocities;
+    }
+
+    /// The flow, and where bodies go in it.
+    Answer solve_flow(const StepToSolve& step, Array<Vertex, Vec3>& velocity) {
+        constexpr double agreed = 3e-4;  // [-] of what acts on a body
+        FlowOptions options = it_.flow->options;
+        options.bodies = surface_velocities(step.dt);
+        FlowState flow = flow_state(it_, state_.fields);
+        try {
+            report.flow = step_flow(ranks_, step.before, step.current, options, flow, step.time, step.dt,
+                                    it_.heat ? temperature() : Array<Vertex, double>{});
+        } catch (const SolverError& error) {
+            unsolved_ = error.what();
+            return NotSolved{unsolved_};
+        }
+        double missed = 0;
+        for (auto& [body, rigid] : free_) {
+            const auto force = std::ranges::find(report.flow.bodies, region_of_body(body), &BodyForce::body);
+            missed = std::max(missed, rigid.take(force->force, force->torque));
+        }
+        if (missed > agreed) {
+            for (auto& [body, rigid] : free_) rigid.improve();
+            return BodiesMoved{places()};
+        }
+        keep_flow(it_, flow, state_.fields);
+        velocity = std::move(flow.velocity);
         return Solved{};
     }
 
@@ -152,6 +235,8 @@ private:
     const Ranks& ranks_;
     Fields fields_;
     MaterialFlow flow_;
+    std::deque<std::pair<std::size_t, RigidStep>> free_;  // bodies that go where forces take them, in this attempt
+    std::string unsolved_;  // why the flow could not be solved for, in the last round
     std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor
 };
 

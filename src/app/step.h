@@ -14,7 +14,8 @@ namespace kropla {
 /// All that a step changes, and nothing else: what a checkpoint keeps.
 struct State {
     MovingMesh moving;
-    std::vector<NodalField> fields;  // on moving.reference(); none if nothing is simulated
+    std::vector<NodalField> fields;  // on moving.reference(): temperature, species, flow, of those that are simulated
+    std::vector<FreeState> free;     // per body: how it goes on, if it goes where forces take it
 };
 
 /// Something that a user should hear of, once.
@@ -28,6 +29,7 @@ struct StepReport {
     Advanced mesh;
     HeatReport heat;                     // if heat is simulated
     std::vector<SpeciesReport> species;  // of each
+    FlowReport flow;                     // if it is simulated
     std::vector<BodyState> bodies;       // at its end
     std::vector<Vec3> velocities;        // [m/s] of the bodies' centroids, in the mean over it
     std::vector<StepWarning> warnings;

@@ -111,7 +111,8 @@ std::variant<RemeshedAttempt, Refusal> attempt_step(MovingMesh& moving, Fields& 
         const Fields::Copy on_refined = refined ? fields.copy() : Fields::Copy{};
         MovedAttempt moved = [&] {
             const Stopwatch watch(done.mesh_seconds, &done.mesh_cpu_seconds);
-            return move_bodies(std::move(attempt), end);  // 2.3, 2.4
+            return move_bodies(std::move(attempt), end,  // 2.3, 2.4
+                               options.expected ? options.expected(end) : std::vector<BodyPlace>{});
         }();
         auto refusal = moved.refusal();
         if (!refusal) refusal = solve_step(moved, refined ? on_refined : start, solve, options, done);  // 2.5

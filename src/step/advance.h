@@ -38,6 +38,8 @@ using Content = std::function<double(const Mesh&)>;
 struct AdvanceOptions {
     double least_dt = 0;     // [s]: if less would be left of dt, the step cannot be done; 0: a thousandth of dt
     int rounds = 20;         // of a solver that says where bodies went
+    /// Where bodies of which the solver says so are expected at `end` [s]: the first round begins with that.
+    std::function<std::vector<BodyPlace>(double end)> expected = {};
     std::vector<Content> contents = {};
     /// Asked when all is done and can still be taken back, with the mesh that is to be the reference; may throw.
     std::function<void(const Mesh&)> last_look = {};

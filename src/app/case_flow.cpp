@@ -1,0 +1,108 @@
+// [flow]: what flows, and what happens at the faces.
+#include "app/case_flow.h"
+
+#include "app/case_heat.h"
+#include "app/noted_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kropla {
+namespace {
+
+/// A constant, or a function of the temperature, which there must be.
+Property read_material(NotedTable& table, std::string_view key, const Case& it, std::size_t region) {
+    const double usual = it.heat ? it.heat->regions[region].initial.value : 0;
+    const Property property = table.property(key, usual > 0 ? usual : 300);
+    if (!property.constant() && !it.heat)
+        table.table().refuse(key, "depends on T, but there is no heat in the case; give a number or [heat]");
+    return property;
+}
+
+FlowRegion read_region(NotedTable table, const Case& it, std::size_t region, VectorQuantity& initial) {
+    table.table().allow({"density", "viscosity", "initial", "force"});
+    FlowRegion read;
+    read.density = read_material(table, "density", it, region);
+    if (!read.density.constant())
+        table.table().refuse("density", "must be a number: a flow whose density changes is not simulated yet");
+    read.viscosity = read_material(table, "viscosity", it, region);
+    initial = table.vector("initial", "[u, v, w] [m/s]");
+    read.force = table.vector("force", "[fx, fy, fz] [N/m^3]");
+    return read;
+}
+
+FlowFace read_face(const CaseTable& faces, std::string_view key, const Vec3& probe, std::string& written) {
+    if (faces.holds_text(key)) {
+        const std::string kind = faces.text(key);
+        written = toml_text(kind);
+        if (kind == "wall") return {};
+        if (kind == "slip") return {.kind = FlowFace::Kind::slip};
+    }
+    if (!faces.holds_table(key))
+        faces.refuse_value(key, "must be \"wall\", \"slip\", { velocity = [u, v, w] } [m/s] or { pressure = ... } [Pa]");
+    const CaseTable table = faces.table(key);
+    table.allow({"velocity", "pressure"});
+    if (table.has("velocity") == table.has("pressure"))
+        faces.refuse(key, "must have one condition: a velocity [m/s], or the pressure [Pa] of an open face");
+    WrittenKeys keys;
+    NotedTable noted(table, probe, keys);
+    FlowFace face;
+    face.kind = table.has("velocity") ? FlowFace::Kind::velocity : FlowFace::Kind::open;
+    face.velocity = noted.vector("velocity", "[u, v, w] [m/s]");
+    face.pressure = noted.quantity("pressure");
+    written = inline_table(keys);
+    return face;
+}
+
+}  // namespace
+
+void read_flow(const CaseTable& file, Case& it) {
+    if (!file.has("flow")) {
+        for (std::size_t body = 0; body < it.free.size(); ++body)
+            if (it.free[body])
+                file.refuse(fmt::format("body[{}].motion.kind", body), "\"free\" needs [flow]: the forces that move the body");
+        return;
+    }
+    const CaseTable table = file.table("flow");
+    table.allow({"gravity", "convection", "region", "face"});
+    FlowPlan plan;
+    WrittenFlow& written = it.written_flow;
+    const Vec3 probe = probe_of(it.domain.box);
+    NotedTable noted(table, probe, written.general);
+    if (table.has("gravity")) {
+        const std::vector<double> g = table.numbers("gravity", 3, "[gx, gy, gz] [m/s^2]");
+        plan.options.gravity = {g[0], g[1], g[2]};
+        noted.note("gravity", fmt::format("[{}, {}, {}]", g[0], g[1], g[2]));
+    }
+    if (table.has("convection")) {
+        plan.options.convection = table.truth("convection");
+        noted.note("convection", plan.options.convection ? "true" : "false");
+    }
+
+    std::vector<std::string> names;
+    for (std::size_t r = 0; r <= it.domain.bodies.size(); ++r) names.push_back(region_name(it.domain, r));
+    const CaseTable regions = table.table("region");
+    regions.allow(names);
+    if (!regions.has(names[0])) table.refuse("region", "must have surroundings: what the bodies are in is to flow");
+    plan.options.regions.resize(names.size());
+    plan.initial.resize(names.size());
+    written.regions.assign(names.size(), {});
+    for (std::size_t r = 0; r < names.size(); ++r) {
+        if (!regions.has(names[r])) continue;
+        const CaseTable region = regions.table(names[r]);
+        if (r > 0) regions.refuse(names[r], "bodies are solid so far; only the surroundings can flow");
+        plan.options.regions[r] = read_region(NotedTable(region, probe, written.regions[r]), it, r, plan.initial[r]);
+    }
+
+    written.faces.fill("\"wall\"");
+    if (table.has("face")) {
+        const CaseTable faces = table.table("face");
+        faces.allow(std::vector<std::string>(face_keys.begin(), face_keys.end()));
+        for (std::size_t f = 0; f < face_keys.size(); ++f)
+            if (faces.has(face_keys[f])) plan.options.faces[f] = read_face(faces, face_keys[f], probe, written.faces[f]);
+    }
+    it.flow = std::move(plan);
+}
+
+}  // namespace kropla

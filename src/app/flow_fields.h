@@ -1,0 +1,26 @@
+#pragma once
+
+#include "app/case.h"
+#include <kropla/simulate/fields.h>
+#include <kropla/simulate/flow.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace kropla {
+
+/// Of the four fields of a flow, velocity by its components and pressure, the place of the first among those of a state.
+[[nodiscard]] std::size_t place_of_flow(const Case& it);
+
+/// As they begin. Throws CaseError if an initial velocity is not finite.
+[[nodiscard]] std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it);
+
+/// From the fields of a state, and back.
+[[nodiscard]] FlowState flow_state(const Case& it, std::span<const NodalField> fields);
+void keep_flow(const Case& it, const FlowState& flow, std::span<NodalField> fields);
+
+/// The flow around bodies that go as they are told: the velocities of their motions.
+[[nodiscard]] RigidVelocity velocity_of(const Body& body, double t, double dt);
+
+}  // namespace kropla
