@@ -2,6 +2,7 @@
 
 #include "app/body_sizes.h"
 #include "app/ending.h"
+#include "app/flow_fields.h"
 #include "app/run_folder.h"
 #include "app/species_fields.h"
 #include "app/step_row.h"
@@ -90,7 +91,14 @@ void RunOutput::write_step(std::int64_t step, const StepReport& report, const St
 void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* watch) {
     if (!speak_) return;
     const Mesh& mesh = state.moving.reference();
-    write_vtu(folder_ / frame_name(step), mesh, shown_fields(mesh, it_, state.fields), watch);
+    std::vector<NodalField> fields = shown_fields(mesh, it_, state.fields);
+    std::vector<NodalVectorField> vectors;
+    if (it_.flow) {
+        FlowState flow = flow_state(it_, state.fields);
+        fields.push_back({"pressure", "Pa", std::move(flow.pressure)});
+        vectors.push_back({"velocity", "m/s", std::move(flow.velocity)});
+    }
+    write_vtu(folder_ / frame_name(step), mesh, fields, watch, vectors);
     series_.push_back({state.moving.time(), frame_name(step)});
     write_pvd(folder_ / "frames.pvd", series_);
 }

@@ -177,6 +177,7 @@ private:
     /// The flow, and where bodies go in it.
     Answer solve_flow(const StepToSolve& step, Array<Vertex, Vec3>& velocity) {
         constexpr double agreed = 3e-4;  // [-] of what acts on a body
+        report.rounds = step.round;
         FlowOptions options = it_.flow->options;
         options.bodies = surface_velocities(step.dt);
         FlowState flow = flow_state(it_, state_.fields);
@@ -260,6 +261,9 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, const Ste
     report.bodies = states();
     for (std::size_t body = 0; body < before.size(); ++body)
         report.velocities.push_back((report.bodies[body].place - before[body].place) / report.mesh.dt);
+    for (std::size_t body = 0; it.flow && body < before.size(); ++body)
+        report.spins.push_back(it.free[body] ? state.free[body].spin
+                                             : velocity_of(it.domain.bodies[body], report.mesh.time, report.mesh.dt).spin);
     return std::move(report);
 }
 

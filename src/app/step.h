@@ -29,9 +29,11 @@ struct StepReport {
     Advanced mesh;
     HeatReport heat;                     // if heat is simulated
     std::vector<SpeciesReport> species;  // of each
-    FlowReport flow;                     // if it is simulated
+    FlowReport flow;                     // if it is simulated, of
+    int rounds = 0;                      // solutions for it, until free bodies went where it took them
     std::vector<BodyState> bodies;       // at its end
     std::vector<Vec3> velocities;        // [m/s] of the bodies' centroids, in the mean over it
+    std::vector<Vec3> spins;             // [rad/s] of the bodies at its end, if there is a flow
     std::vector<StepWarning> warnings;
 };
 

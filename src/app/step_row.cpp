@@ -5,11 +5,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace kropla {
 namespace {
+
+/// What the flow does to a body.
+void add_forces(const StepReport& report, std::size_t body, const std::string& name, StepRow& row) {
+    const auto known = std::ranges::find(report.flow.bodies, region_of_body(body), &BodyForce::body);
+    const BodyForce acting = known != report.flow.bodies.end() ? *known : BodyForce{};
+    const auto add = [&](std::string_view quantity, const Vec3& value, std::string_view unit) {
+        for (int axis = 0; axis < 3; ++axis)
+            row.push_back({fmt::format("{}_{}_{} [{}]", quantity, "xyz"[axis], name, unit), value[axis]});
+    };
+    add("spin", body < report.spins.size() ? report.spins[body] : Vec3{}, "rad/s");
+    add("force", acting.force, "N");
+    add("torque", acting.torque, "N m");
+}
 
 /// Where each body is, how it goes, and how large and warm it is.
 void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
@@ -25,6 +39,7 @@ void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
                                {fmt::format("w_{} [m/s]", name), velocity.z},
                                {fmt::format("volume_{} [m^3]", name), state.volume},
                                {fmt::format("area_{} [m^2]", name), state.area}});
+        if (it.flow) add_forces(report, body, name, row);
         if (!it.heat) continue;
         const double leaves = body < report.heat.surfaces.size() ? report.heat.surfaces[body].total : 0;
         row.insert(row.end(), {{fmt::format("temperature_min_{} [K]", name), state.coldest},
@@ -56,6 +71,19 @@ void add_energy(const StepReport& report, const HeatOptions& heat, StepRow& row)
                            {"heat_at_surfaces [W]", sum(balance.surfaces) / dt},
                            {"heat_held [W]", sum(balance.held) / dt},
                            {"energy_error [J]", balance.error()}});
+}
+
+/// What passes the faces, and how the flow was solved for.
+void add_flow(const StepReport& report, const FlowPlan& plan, StepRow& row) {
+    const FlowReport& flow = report.flow;
+    for (std::size_t face = 0; face < face_keys.size(); ++face)
+        row.push_back({fmt::format("volume_out_{} [m^3/s]", face_keys[face]), flow.face_flux[face]});
+    const double density = plan.options.regions[0]->density(0);
+    row.insert(row.end(), {{"mass_error_surroundings [kg]", flow.net_flux * density * report.mesh.dt},
+                           {"courant", flow.largest_courant},
+                           {"flow_passes", static_cast<double>(flow.passes)},
+                           {"flow_iterations", static_cast<double>(flow.iterations)},
+                           {"flow_rounds", static_cast<double>(report.rounds)}});
 }
 
 /// What there is of each species, and how far step and transfer missed it.
@@ -110,6 +138,7 @@ StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, 
     add_bodies(report, it, row);
     if (it.heat) add_energy(report, *it.heat, row);
     add_species(report, it, row);
+    if (it.flow) add_flow(report, *it.flow, row);
     return row;
 }
 

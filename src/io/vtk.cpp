@@ -206,10 +206,17 @@ void add_cell_arrays(vtkUnstructuredGrid* grid, const Mesh& mesh) {
     grid->GetCellData()->AddArray(layer);
 }
 
-void add_field(vtkUnstructuredGrid* grid, const NodalField& field, const Array<Vertex, Vertex>& old_vertex) {
-    const auto array = make_array<vtkDoubleArray>(field.name.c_str(), old_vertex.size());
+void put(vtkDoubleArray* array, vtkIdType place, double value) { array->SetValue(place, value); }
+void put(vtkDoubleArray* array, vtkIdType place, const Vec3& value) { array->SetTuple3(place, value.x, value.y, value.z); }
+
+template <class Field>
+void add_field(vtkUnstructuredGrid* grid, const Field& field, const Array<Vertex, Vertex>& old_vertex) {
+    const vtkNew<vtkDoubleArray> array;
+    array->SetName(field.name.c_str());
+    array->SetNumberOfComponents(std::is_same_v<Field, NodalVectorField> ? 3 : 1);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(old_vertex.size()));
     if (!field.unit.empty()) array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field.unit.c_str());
-    for (const Vertex v : old_vertex.indices()) array->SetValue(v.value, field.values[old_vertex[v]]);
+    for (const Vertex v : old_vertex.indices()) put(array, v.value, field.values[old_vertex[v]]);
     grid->GetPointData()->AddArray(array);
 }
 
@@ -394,7 +401,7 @@ Patch patch_of(const Mesh& mesh, Facet facet, const BoundingBox& box) {
 }  // namespace
 
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields,
-               const Watch* watch) {
+               const Watch* watch, std::span<const NodalVectorField> vectors) {
     heed(watch);
     const Compacted compacted = compact(mesh);
     heed(watch);
@@ -404,6 +411,7 @@ void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<co
     add_cell_arrays(grid, compacted.mesh);
     heed(watch);
     for (const NodalField& field : fields) add_field(grid, field, compacted.old_vertex);
+    for (const NodalVectorField& field : vectors) add_field(grid, field, compacted.old_vertex);
 
     const CaughtErrors errors;
     vtkNew<vtkXMLUnstructuredGridWriter> writer;

@@ -10,7 +10,7 @@
 namespace kropla {
 
 /// Writes a frame as a VTU file: the mesh without its free slots, tets before prisms, and the fields as point
-/// arrays. Cell arrays:
+/// arrays, vectors as those of three components. Cell arrays:
 ///
 ///     region        0 = surroundings, 1... = bodies in order
 ///     layer         0 for tets, 1... for prisms, counted from the wall
@@ -21,7 +21,7 @@ namespace kropla {
 /// The file gets its name when it is complete. Throws FileError with the path and the system's reason; Interrupted if
 /// the watch says so, and what was there before stays.
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {},
-               const Watch* watch = nullptr);
+               const Watch* watch = nullptr, std::span<const NodalVectorField> vectors = {});
 
 /// What a VTU file says, before neighbours are known: cells as they stand, right or wrong.
 struct FileCells {

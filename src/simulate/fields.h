@@ -19,4 +19,11 @@ struct NodalField {
     Array<Vertex, double> values;  // free slots hold nothing of meaning
 };
 
+/// The same of vectors.
+struct NodalVectorField {
+    std::string name;  // "velocity"
+    std::string unit;  // "m/s"
+    Array<Vertex, Vec3> values;
+};
+
 }  // namespace kropla
