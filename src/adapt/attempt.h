@@ -49,12 +49,6 @@ private:
     AttemptRight right_;
 };
 
-/// Where a body really is at the end of a step, against its start.
-struct BodyPlace {
-    std::size_t body;  // its number in the domain
-    Pose pose;
-};
-
 /// Stages 2.3 and 2.4: bodies are at the end of their motions, their surroundings have followed.
 class MovedAttempt {
 public:

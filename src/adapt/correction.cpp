@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace kropla {
@@ -36,6 +37,18 @@ Rotation between(const Rotation& from, const Rotation& to, double share) {
 
 Correction correction(const Pose& planned, const Pose& real) {
     return {real.displacement - planned.displacement, real.rotation * inverse(planned.rotation)};
+}
+
+PlannedMotions::PlannedMotions(const Domain& domain, double t) {
+    for (const Body& body : domain.bodies) motion.push_back(body.motion);
+    corrected.assign(motion.size(), {{}, {}, t, t + 1});
+}
+
+void PlannedMotions::correct(Domain& domain, const BodyPlace& place, double t) {
+    if (place.body >= motion.size()) throw std::logic_error("a body is told its place that the domain has not");
+    const Correction there = correction(motion[place.body](t), place.pose);
+    corrected[place.body] = {there, there, t, t + 1};
+    domain.bodies[place.body].motion = kropla::corrected(motion[place.body], corrected[place.body]);
 }
 
 Motion corrected(Motion planned, const CorrectedStep& step) {

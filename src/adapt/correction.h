@@ -1,6 +1,9 @@
 #pragma once
 
+#include <kropla/adapt/moving_mesh.h>
 #include <kropla/domain/domain.h>
+
+#include <vector>
 
 namespace kropla {
 
@@ -18,5 +21,15 @@ struct CorrectedStep {
 /// The motion with the correction that it has at t0, and all along the step to that at t1: evenly in displacement and
 /// angle; before and after as at the ends.
 [[nodiscard]] Motion corrected(Motion planned, const CorrectedStep& step);
+
+/// The motions of bodies as they were asked for, and how far each body is from it.
+struct PlannedMotions {
+    PlannedMotions(const Domain& domain, double t);
+    /// At t [s] a body stands there, and its motion in the domain goes on from it.
+    void correct(Domain& domain, const BodyPlace& place, double t);
+
+    std::vector<Motion> motion;
+    std::vector<CorrectedStep> corrected;  // per body: the last step that was told otherwise
+};
 
 }  // namespace kropla

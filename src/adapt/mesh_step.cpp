@@ -73,15 +73,13 @@ void look_again(const Mesh& mesh, const char* which) {
 
 }  // namespace
 
-MeshStep::MeshStep(Domain domain, Mesh mesh, double t, const AdaptOptions& options)
-    : domain_(std::move(domain)), options_(options),
+MeshStep::MeshStep(Domain domain, PlannedMotions planned, Mesh mesh, double t, const AdaptOptions& options)
+    : domain_(std::move(domain)), planned_(std::move(planned)), options_(options),
       follow_(options.paper ? Follow::rest : Follow::spread), reference_(std::move(mesh)), before_(reference_),
       current_(reference_), time_(t), target_time_(t) {
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
         bodies_.push_back(vertices_of(reference_, region_of_body(body)));
     at_inner_shells_ = cells_at_inner_shells(reference_);
-    for (const Body& body : domain_.bodies) planned_.push_back(body.motion);
-    corrected_.assign(planned_.size(), {{}, {}, t, t + 1});
 }
 
 void MeshStep::end_attempt() noexcept {
@@ -170,11 +168,11 @@ void MeshStep::move_boundary() {
 
 void MeshStep::correct(std::span<const BodyPlace> places) {
     for (const auto& [body, pose] : places) {
-        if (body >= planned_.size()) throw std::logic_error("a body is told its place that the domain has not");
-        const CorrectedStep step{corrected_[body].to, correction(planned_[body](target_time_), pose), time_, target_time_};
+        if (body >= planned_.motion.size()) throw std::logic_error("a body is told its place that the domain has not");
+        const CorrectedStep step{planned_.corrected[body].to, correction(planned_.motion[body](target_time_), pose), time_, target_time_};
         const auto known = told_.try_emplace(body, Told{step, domain_.bodies[body].motion}).first;
         known->second.step = step;
-        domain_.bodies[body].motion = corrected(planned_[body], step);
+        domain_.bodies[body].motion = corrected(planned_.motion[body], step);
     }
     if (places.empty()) return;
     copy_changed(current_, before_, {}, moved_);
@@ -380,7 +378,7 @@ const Changes& MeshStep::remesh() {
 
 void MeshStep::accept() {
     copy_changed(reference_, current_, replaced_.list(), moved_);
-    for (const auto& [body, told] : told_) corrected_[body] = told.step;
+    for (const auto& [body, told] : told_) planned_.corrected[body] = told.step;
     told_.clear();
     time_ = target_time_;
     trouble_.clear();

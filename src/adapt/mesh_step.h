@@ -17,7 +17,7 @@ namespace kropla {
 ///     else { remesh(); accept(); }                  // 2.6
 class MeshStep {
 public:
-    MeshStep(Domain domain, Mesh mesh, double t, const AdaptOptions& options = {});
+    MeshStep(Domain domain, PlannedMotions planned, Mesh mesh, double t, const AdaptOptions& options = {});
 
     [[nodiscard]] const Mesh& reference() const { return reference_; }
     [[nodiscard]] double time() const { return time_; }  ///< of the reference [s]
@@ -86,8 +86,7 @@ private:
     void note_replaced(const Changes& changes);
 
     Domain domain_;                          // with motions that go on from where bodies really are
-    std::vector<Motion> planned_;            // as asked for
-    std::vector<CorrectedStep> corrected_;   // per body: the last step that was told otherwise
+    PlannedMotions planned_;
     std::map<std::size_t, Told> told_;       // by bodies: this step
     AdaptOptions options_;
     Follow follow_;                          // of the surroundings

@@ -16,9 +16,12 @@ const MeshStep& there(const std::shared_ptr<MeshStep>& step) {
 
 }  // namespace
 
-MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options) {
+MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options,
+                       std::span<const BodyPlace> places) {
+    PlannedMotions planned(domain, t);
+    for (const BodyPlace& place : places) planned.correct(domain, place, t);
     check_fits(domain, mesh, t);
-    step_ = std::make_shared<MeshStep>(std::move(domain), std::move(mesh), t, options);
+    step_ = std::make_shared<MeshStep>(std::move(domain), std::move(planned), std::move(mesh), t, options);
 }
 
 MovingMesh::MovingMesh(const MovingMesh& other) : step_(std::make_shared<MeshStep>(there(other.step_))) {

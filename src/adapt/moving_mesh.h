@@ -22,14 +22,22 @@ struct StepStatistics {
 
 class MeshStep;
 
+/// Where a body really is, against its start.
+struct BodyPlace {
+    std::size_t body;  // its number in the domain
+    Pose pose;
+};
+
 /// A mesh that follows its bodies: the reference mesh, which nothing changes but an attempt that is accepted
 /// (attempt.h), and what is kept from step to step so that a step costs no more than what it changes.
 class MovingMesh {
 public:
     /// `mesh` is the mesh of `domain` at time `t` [s], whoever made it: of each body the cells, its surface where the
     /// body stands; patches 0 ... 5 on the faces of the box that bear their numbers.
+    /// Bodies that a solver has moved otherwise than their motions say stand at `places`, and go on from there.
     /// Throws DomainError, naming body or facet and place, if that is not so, or if `verify` finds a fault.
-    MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options = {});
+    MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options = {},
+               std::span<const BodyPlace> places = {});
     MovingMesh(const MovingMesh& other);  ///< without the attempt that `other` may have under way
     MovingMesh(MovingMesh&&) noexcept = default;
     MovingMesh& operator=(const MovingMesh& other);

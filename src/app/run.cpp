@@ -131,10 +131,10 @@ Place resume(Case& it, const RunOptions& options, const Watch* watch) {
     go_on_with(it, {saved.case_text, static_cast<int>(had), saved.time}, options.case_file.string(),
                options.out.string());
     std::vector<FreeState> free = free_states(it, saved.values);
-    Domain domain = it.domain;
+    std::vector<BodyPlace> places;
     for (std::size_t body = 0; body < free.size(); ++body)
-        if (it.free[body]) domain.bodies[body].motion = [pose = free[body].pose](double) { return pose; };
-    Place place{{MovingMesh(domain, std::move(saved.mesh), saved.time, adapt_options(it, watch)),
+        if (it.free[body]) places.push_back({body, free[body].pose});
+    Place place{{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it, watch), places),
                  std::move(saved.fields), std::move(free)},
                 saved.step,
                 saved.next_dt,
