@@ -61,7 +61,7 @@ void read_flow(const CaseTable& file, Case& it) {
     if (!file.has("flow")) {
         for (std::size_t body = 0; body < it.free.size(); ++body)
             if (it.free[body])
-                file.refuse(fmt::format("body[{}].motion.kind", body), "\"free\" needs [flow]: the forces that move the body");
+                file.tables("body")[body].table("motion").refuse("kind", "\"free\" needs [flow]: the forces that move the body");
         return;
     }
     const CaseTable table = file.table("flow");

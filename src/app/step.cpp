@@ -176,7 +176,8 @@ private:
 
     /// The flow, and where bodies go in it.
     Answer solve_flow(const StepToSolve& step, Array<Vertex, Vec3>& velocity) {
-        constexpr double agreed = 3e-4;  // [-] of what acts on a body
+        constexpr double agreed = 3e-4;   // [-] of what acts on a body
+        constexpr double let_pass = 1.1;  // [-] of the Courant number: no step is taken back for a little
         report.rounds = step.round;
         FlowOptions options = it_.flow->options;
         options.bodies = surface_velocities(step.dt);
@@ -188,6 +189,10 @@ private:
             unsolved_ = error.what();
             return NotSolved{unsolved_};
         }
+        if (const double most = it_.time.courant.value_or(INFINITY); report.flow.largest_courant > let_pass * most)
+            return NotSolved{fmt::format("the flow crosses {:.3g} heights of a cell, more than time.courant = {}",
+                                         report.flow.largest_courant, most),
+                             step.dt * most / report.flow.largest_courant};
         double missed = 0;
         for (auto& [body, rigid] : free_) {
             const auto force = std::ranges::find(report.flow.bodies, region_of_body(body), &BodyForce::body);

@@ -1,0 +1,144 @@
+// What a run does of flow: bodies that fall in it, gas that passes through the box and carries heat.
+#include "run_results.h"
+#include <kropla/io/checkpoint.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace kropla {
+namespace {
+
+const std::string box = "[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1.5]\n[size]\nsurface = 0.12\nfar = 0.3\n";
+const std::string ball = "[[body]]\nname = \"ball\"\nshape = \"sphere\"\ncentre = [0.5, 0.5, 0.9]\nradius = 0.15\n";
+
+std::string falling(double end, int steps, const std::string& motion = "density = 3\n") {
+    return box + "[time]\nend = " + std::to_string(end) + "\nsteps = " + std::to_string(steps) + "\n" + ball +
+           "[body.motion]\nkind = \"free\"\n" + motion +
+           "[flow]\ngravity = [0, 0, -1]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 0.05\n";
+}
+
+/// Gas goes down around a ball that goes up, and warms it.
+const std::string blown = box + "[time]\nend = 0.4\nsteps = 4\n" + ball + "[body.motion]\nz = \"0.1*t\"\n" +
+                          "[flow.region.surroundings]\ndensity = 1\nviscosity = 0.05\n[flow.face]\n"
+                          "z_max = { velocity = [0, 0, \"-16*x*(1-x)*y*(1-y)\"] }\nz_min = { pressure = 0 }\n"
+                          "x_min = \"slip\"\n"
+                          "[heat.region.surroundings]\nconductivity = 0.01\ndensity = 1\nspecific_heat = 1\ninitial = 300\n"
+                          "[heat.region.ball]\nconductivity = 1\ndensity = 5\nspecific_heat = 1\ninitial = 300\n"
+                          "[heat.face]\nz_max = { value = 1000 }\n"
+                          "[[species]]\nname = \"smoke\"\n[species.region.surroundings]\ndiffusivity = 0.001\ninitial = 0\n"
+                          "[species.face]\nz_max = { value = 2 }\n";
+
+TEST(RunFlow, ABallFallsAndGoesOnBitByBit) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", falling(0.8, 4));
+    write(folder.path / "half.toml", falling(0.4, 2));
+    const Outcome it = kropla_program(folder, "run a.toml --out whole");
+    ASSERT_EQ(it.code, 0) << it.err;
+    ASSERT_EQ(kropla_program(folder, "run half.toml --out d").code, 0);
+    ASSERT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+    EXPECT_EQ(lasting_columns(folder.path / "d"), lasting_columns(folder.path / "whole"));
+    EXPECT_EQ(contents(folder.path / "d/frames/00004.vtu"), contents(folder.path / "whole/frames/00004.vtu"));
+
+    const Table steps = read_table(folder.path / "whole/steps.csv");
+    const double volume = numbers(steps, "volume_ball").back();
+    EXPECT_LT(numbers(steps, "z_ball").back(), 0.9 - 0.02);
+    for (const double w : numbers(steps, "w_ball")) EXPECT_LT(w, 0);
+    // By the law of motion, with the force at the end of each step.
+    const std::vector<double> force = numbers(steps, "force_z_ball"), dt = numbers(steps, "dt");
+    double velocity = 0, gone = 0;
+    for (std::size_t n = 0; n < force.size(); ++n) {
+        const double rate = force[n] / (3 * volume) - 1;
+        gone += dt[n] * velocity + 0.5 * dt[n] * dt[n] * rate;
+        velocity += dt[n] * rate;
+    }
+    EXPECT_NEAR(numbers(steps, "z_ball").back() - numbers(steps, "z_ball").front(),
+                gone - numbers(steps, "w_ball").front() * dt.front(), 1e-4);
+    for (const double lost : numbers(steps, "mass_error_surroundings")) EXPECT_NEAR(lost, 0, 1e-12);
+}
+
+TEST(RunFlow, WhatIsHeldStaysAndSpinsGoOn) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", falling(0.2, 2, "density = 3\nspin = [0, 0, 2]\nhold = [\"x\", \"y\", \"turn_x\"]\n"));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const Table steps = read_table(folder.path / "d/steps.csv");
+    EXPECT_NEAR(numbers(steps, "x_ball").back(), numbers(steps, "x_ball").front(), 1e-12);
+    EXPECT_EQ(numbers(steps, "spin_x_ball").back(), 0);
+    EXPECT_GT(numbers(steps, "spin_z_ball").back(), 0.2);
+    EXPECT_LT(numbers(steps, "spin_z_ball").back(), 2);
+    EXPECT_LT(numbers(steps, "torque_z_ball").back(), 0);
+}
+
+TEST(RunFlow, CarriesHeatAndSpecies) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", blown);
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const Table steps = read_table(folder.path / "d/steps.csv");
+    EXPECT_GT(numbers(steps, "volume_out_z_min").back(), 0.3);
+    const std::vector<double> energy = numbers(steps, "energy_integral"), error = numbers(steps, "energy_error"),
+                              smoke = numbers(steps, "smoke_integral"), smoke_error = numbers(steps, "smoke_error");
+    for (std::size_t n = 0; n < energy.size(); ++n) {
+        EXPECT_NEAR(error[n], 0, 1e-12 * energy[n]);
+        EXPECT_NEAR(smoke_error[n], 0, 1e-12 * smoke.back());
+        EXPECT_NEAR(numbers(steps, "mass_error_surroundings")[n], 0, 1.1e-6);  // of 0.04 that pass
+    }
+    EXPECT_GT(smoke.back(), 0.2);
+    for (const double coldest : numbers(steps, "temperature_min_ball")) EXPECT_GE(coldest, 300 - 1e-7);
+    const Checkpoint last = read_checkpoint(folder.path / "d/checkpoint.h5");
+    for (Tet t : last.mesh.tets.indices()) {
+        if (!alive(last.mesh, t)) continue;
+        for (Vertex v : last.mesh.tets[t]) {
+            EXPECT_GE(last.fields[0].values[v], 300 - 1e-7);
+            EXPECT_LE(last.fields[0].values[v], 1000 + 1e-7);
+        }
+    }
+    write(folder.path / "again.toml", contents(folder.path / "d/case.toml"));
+    const Outcome again = kropla_program(folder, "run again.toml --out e");
+    ASSERT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(contents(folder.path / "d/frames/00004.vtu"), contents(folder.path / "e/frames/00004.vtu"));
+}
+
+TEST(RunFlow, CutsStepsByCourantNumbers) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", replaced(blown, "steps = 4", "steps = 4\ncourant = 0.3"));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const std::vector<double> courant = numbers(read_table(folder.path / "d/steps.csv"), "courant");
+    EXPECT_GT(courant.size(), 6u);
+    for (std::size_t n = 0; n < courant.size(); ++n) EXPECT_LT(courant[n], 1.1 * 0.3);
+}
+
+TEST(RunFlow, WhatIsWrongIsNamed) {
+    const TemporaryFolder folder;
+    const std::string text = falling(0.2, 2);
+    const std::pair<std::string, std::string> wrong[] = {
+        {replaced(text, "[flow]\ngravity = [0, 0, -1]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 0.05\n", ""),
+         "body[0].motion.kind (line 16): \"free\" needs [flow]: the forces that move the body"},
+        {replaced(text, "kind = \"free\"", "kind = \"free\"\nz = \"t\""),
+         "body[0].motion.z (line 17): unknown key; known here: kind, density, velocity, spin, hold"},
+        {replaced(text, "density = 3\n", ""), "body[0].motion.density (line 15): is missing; it must be positive"},
+        {replaced(text, "density = 3\n", "density = 3\nhold = [\"w\"]\n"),
+         "body[0].motion.hold (line 18): must be of x, y, z, turn, turn_x, turn_y and turn_z, got [\"w\"]"},
+        {replaced(text, "viscosity = 0.05\n", ""),
+         "flow.region.surroundings.viscosity (line 20): is missing; it must be positive"},
+        {replaced(text, "viscosity = 0.05\n", "viscosity = \"0.05*T\"\n"),
+         "flow.region.surroundings.viscosity (line 22): depends on T, but there is no heat in the case; give a number or [heat]"},
+        {text + "[flow.face]\nz_max = { velocity = [0, 0, -1] }\n", "flow"},
+        {text + "[flow.face]\nz_max = \"open\"\n",
+         "flow.face.z_max (line 24): must be \"wall\", \"slip\", { velocity = [u, v, w] } [m/s] or { pressure = ... } [Pa], got "
+         "\"open\""},
+        {replaced(text, "[time]\n", "[time]\ncourant = -1\n"), "time.courant (line 8): must be positive, got -1"}};
+    for (const auto& [spoiled, refusal] : wrong) {
+        write(folder.path / "a.toml", spoiled);
+        const Outcome it = kropla_program(folder, "run a.toml --out d --force");
+        EXPECT_EQ(it.code, 2) << refusal;
+        expect_one_line(it.err, refusal);
+    }
+}
+
+}  // namespace
+}  // namespace kropla
