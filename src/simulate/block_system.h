@@ -20,7 +20,7 @@ inline constexpr std::size_t block_entries = block_size * block_size;
 /// on, column by column as PETSc keeps blocks, and the residual of row i.
 template <std::size_t n>
 struct CellBlocks {
-    std::array<double, block_entries * n * n> matrix;
+    alignas(32) std::array<double, block_entries * n * n> matrix;
     std::array<double, block_size * n> residual;
 
     [[nodiscard]] double* block(std::size_t i, std::size_t j) { return matrix.data() + block_entries * (n * i + j); }

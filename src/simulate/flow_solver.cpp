@@ -381,7 +381,10 @@ double FlowSolver::size(const std::vector<double>& residual) const {
     for (std::size_t r = 0; r < p.rows().count(); ++r) {
         const std::size_t own = static_cast<std::size_t>(p.rows().first_row) + r;
         for (std::size_t k = 0; k < block_size; ++k)
-            if (!p.fixed(own, k)) sum += std::pow(residual[block_size * r + k] * p.own_scale[block_size * r + k], 2);
+            if (!p.fixed(own, k)) {
+                const double scaled = residual[block_size * r + k] * p.own_scale[block_size * r + k];
+                sum += scaled * scaled;
+            }
     }
     return std::sqrt(total(p.ranks, sum));
 }

@@ -174,7 +174,6 @@ private:
         largest_left_ = std::max(largest_left_, left);
         const double wanted = options_.tolerance * largest_left_;
         for (int pass = 1; left > wanted; ++pass) {
-            if (getenv("DBG")) fprintf(stderr, "pass %d left %g wanted %g its %d\n", pass, left, wanted, solver_.iterations());
             if (pass > options_.most_passes || !std::isfinite(left)) give_up(pass, left / largest_left_);
             add(solver_.solve(system_.residual, std::max(margin * wanted / left, forcing)));
             ++passes_;
@@ -257,6 +256,7 @@ private:
 
     /// Does momentum pass several cells in the stage, by viscosity, somewhere?
     [[nodiscard]] bool is_viscous(const FlowStage& stage) const {
+        if (getenv("ILU")) return false;
         if (stage.per_time == 0) return true;
         double most = 0;
         for_each_cell(blocks_.pattern.cells, [&](const auto& cell) {

@@ -32,6 +32,22 @@ double root_mean_square(const Mesh& mesh, const std::function<double(Vertex)>& e
     return std::sqrt(sum / volume);
 }
 
+/// Blows the sphere up until the polyhedron has its volume; the layer keeps its shell.
+void give_volume(Mesh& mesh, double radius, double thick) {
+    double volume = 0;
+    for_each_share(mesh, living_cells(mesh, Region(1)), [&](const auto&, Vertex, double share) { volume += share; });
+    const double grown = std::cbrt(4 * std::numbers::pi / 3 * radius * radius * radius / volume);
+    Array<Vertex, char> of_body(mesh.position.size(), 0);
+    for_each_cell(living_cells(mesh, Region(1)), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) of_body[v] = 1;
+    });
+    for (Vertex v : mesh.position.indices()) {
+        const double r = norm(mesh.position[v]);
+        if (of_body[v]) mesh.position[v] = grown * mesh.position[v];
+        else if (r < thick) mesh.position[v] = (1 + (grown - 1) * radius / r * (thick - r) / (thick - radius)) * mesh.position[v];
+    }
+}
+
 }  // namespace
 
 VectorQuantity velocity_of(const std::function<Vec3(const Vec3& place, double t)>& velocity) {
@@ -96,7 +112,9 @@ Mesh sphere_in_cube(const SphereInCube& shape) {
     const Mesh tets = cube_grid(2 * count, 2 * count, 2 * count, place, [&](int i, int j, int k) {
         return std::max({ring(i), ring(j), ring(k)}) <= body ? 1 : 0;
     });
-    return with_layer(tets, {}, surroundings, shape.prisms, shape.layer / thick);
+    Mesh mesh = with_layer(tets, {}, surroundings, shape.prisms, shape.layer / thick);
+    give_volume(mesh, shape.radius, thick);
+    return mesh;
 }
 
 Vec3 stokes_velocity(const Vec3& place, double radius, double speed) {
