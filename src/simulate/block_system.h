@@ -83,7 +83,9 @@ void assemble_blocks(const Mesh& mesh, const BlockPattern& blocks, const Kernel&
         CellBlocks<n> of_cell;
         std::vector<std::size_t> next(at.begin.begin() + static_cast<std::ptrdiff_t>(part.first_row),
                                       at.begin.begin() + static_cast<std::ptrdiff_t>(part.end_row));
-        for (std::uint32_t c : cells) {
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            if (k % 4096 == 0) heed(watch);
+            const std::uint32_t c = cells[k];
             const auto vertices = cell_vertices(mesh, names[c]);
             std::array<std::size_t, n> row;
             for (std::size_t i = 0; i < n; ++i)
@@ -93,7 +95,6 @@ void assemble_blocks(const Mesh& mesh, const BlockPattern& blocks, const Kernel&
         }
     };
     for_all(blocks.parts.size(), [&](std::size_t p) {
-        heed(watch);
         const BlockPattern::Part& part = blocks.parts[p];
         const auto rows = [&](std::size_t row) { return static_cast<std::ptrdiff_t>(row); };
         std::fill(system.residual.begin() + rows(block_size * part.first_row),

@@ -69,7 +69,7 @@ struct FlowOptions {
     bool convection = true;                // false: Stokes
     std::array<FlowFace, 6> faces = {};    // x min, x max, y min, y max, z min, z max
     FlowScheme scheme = FlowScheme::second_order;
-    double tolerance = 1e-4;  // [-] of the first residual, of either stage: where Newton's method ends
+    double tolerance = 1e-3;  // [-] of the first residual, of either stage: where Newton's method ends
     int most_passes = 20;     // of it
     std::string key = "flow";  // of what messages speak
 };

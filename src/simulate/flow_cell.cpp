@@ -216,6 +216,7 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
         const Vec3 viscous = volume * cell.viscosity * gi, steered = volume * tau * gi;
         const Four compressed = four(volume * at.tau.volume * gi, volume * at.means.value[i]);
         const Vec3 turned = newton * tau * (gi.x * at.du[0] + gi.y * at.du[1] + gi.z * at.du[2]);
+        const Four turning = cell.convection ? volume * tau * density * four(at.residual, 0) : Four(0);  // of the weight
         const Four pushed = four(-volume * gi, 0), along = volume * weight * four({1, 1, 1}, 0);
         for (std::size_t j = 0; j < n; ++j) {
             const Vec3& gj = at.gradient[j];
@@ -227,7 +228,8 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
             for (int c = 0; c < 3; ++c) {
                 const auto column = static_cast<std::size_t>(c);
                 put<add>(bent * du[column] + Four(viscous[c]) * gradient[j] + Four(gj[c]) * compressed +
-                             Four(same) * unit[column] + four({}, value * turned[c]),
+                             Four(same) * unit[column] + Four(value * gi[c]) * turning +
+                             four({}, value * turned[c]),
                          block + block_size * column);
             }
             put<add>(along * gradient[j] + Four(value) * pushed + four({}, dot(steered, gj)), block + block_size * 3);

@@ -278,9 +278,14 @@ struct FlowSolver::Parts {
         check(MatSetSizes(made, width * count, width * count, PETSC_DETERMINE, PETSC_DETERMINE));
         check(MatSetType(made, MATBAIJ));
         check(MatSetBlockSize(made, width));
-        check(MatSetOption(made, MAT_ROW_ORIENTED, PETSC_FALSE));
         check(MatSeqBAIJSetPreallocationCSR(made, width, rows().begin.data(), rows().column.data(), nullptr));
-        check(MatMPIBAIJSetPreallocationCSR(made, width, rows().begin.data(), rows().column.data(), own_value.data()));
+        if (ranks.count == 1) return;
+        std::vector<double> by_rows(own_value.size());  // of each block, which is what this way in takes
+        for (std::size_t at = 0; at < by_rows.size(); at += block_entries)
+            for (std::size_t k = 0; k < block_size; ++k)
+                for (std::size_t c = 0; c < block_size; ++c)
+                    by_rows[at + block_size * k + c] = own_value[at + block_size * c + k];
+        check(MatMPIBAIJSetPreallocationCSR(made, width, rows().begin.data(), rows().column.data(), by_rows.data()));
     }
 
     [[nodiscard]] std::span<double> make_values() {
