@@ -5,12 +5,14 @@
 namespace kropla {
 namespace {
 
-constexpr std::size_t least_rows = 2048;     // of a part: a cube of some 13 vertices a side, every fourth cell is asked
-                                             //   for twice
+constexpr std::size_t least_rows =
+    2048;  // of a part: a cube of some 13 vertices a side, every fourth cell is asked
+           //   for twice
 constexpr std::size_t parts_of_thread = 4;   // so that none has to wait long; a single thread has one part
 
 std::size_t count_parts(std::size_t rows) {
-    const std::size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    const std::size_t threads =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     return threads == 1 ? 1 : std::clamp<std::size_t>(rows / least_rows, 1, parts_of_thread * threads);
 }
 

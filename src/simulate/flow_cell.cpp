@@ -1,22 +1,27 @@
-// What a cell, a tet or a prism, adds to a stage of a flow's step. With a = u - w and the residual of momentum
-// r = rho (du/dt + a.grad u) - f + grad p (without viscosity: linear tets have none within them, prisms next to none)
+// What a cell, a tet or a prism, adds to a stage of a flow's step. With a = u - w and the residual of
+// momentum r = rho (du/dt + a.grad u) - f + grad p (without viscosity: linear tets have none within them,
+// prisms next to none)
 //     momentum i:  integral(phi_i (rho (du/dt + a.grad u) - f) + sigma.grad phi_i)
 //                  + integral(tau_M rho a.grad phi_i r) + integral(tau_C div u grad phi_i),
 //     volume i:    integral(phi_i div u) + integral(tau_M grad phi_i.r).
 //   [Brooks, Hughes 1982] Streamline upwind/Petrov-Galerkin formulations. CMAME 32.
-//   [Hughes, Franca, Balestra 1986] A new finite element formulation for computational fluid dynamics: V. CMAME 59: PSPG.
-//   [Bazilevs, Calo, Cottrell, Hughes, Reali, Scovazzi 2007] Variational multiscale residual-based turbulence modeling.
-//     CMAME 197: tau_M = (4/dt^2 + a.G.a + C nu^2 G:G)^(-1/2) / rho, G the metric tensor of the cell, without the terms of
-//     second order in the unresolved velocity. Theirs is tau_C = 1 / (tau_M tr G); here it is rho^2 a.G.a tau_M / tr G,
-//     without the rate's part: the same where convection rules, and nothing where viscosity does, which would be
-//     stiffened by it: the drag of a sphere in Stokes flow was 1.6 times as far off.
-//   [Franca, Frey 1992] Stabilized finite element methods: II. The incompressible Navier-Stokes equations. CMAME 99.
-//   [Bazilevs, Gohean, Hughes, Moser, Zhang 2009] Patient-specific isogeometric fluid-structure interaction analysis.
-//     CMAME 198: an open boundary takes -rho/2 (u.n)_- u where the flow comes back.
-//   [Heywood, Rannacher, Turek 1996] Artificial boundaries and flux and pressure conditions. Int. J. Numer. Methods
-//     Fluids 22: there mu du/dn - p n is given rather than the traction, so that a developed flow goes out as it is.
-// G of a tet is the mean over the four corners that the reference tet may begin at, so that it does not depend on their
-// order; likewise over the three of a prism's triangle, with its height from -1 to 1.
+//   [Hughes, Franca, Balestra 1986] A new finite element formulation for computational fluid dynamics: V.
+//     CMAME 59: PSPG.
+//   [Bazilevs, Calo, Cottrell, Hughes, Reali, Scovazzi 2007] Variational multiscale residual-based turbulence
+//     modeling. CMAME 197: tau_M = (4/dt^2 + a.G.a + C nu^2 G:G)^(-1/2) / rho, G the metric tensor of the
+//     cell, without the terms of second order in the unresolved velocity. Theirs is tau_C = 1 / (tau_M tr G);
+//     here it is rho^2 a.G.a tau_M / tr G, without the rate's part: the same where convection rules, and
+//     nothing where viscosity does, which would be stiffened by it: the drag of a sphere in Stokes flow was
+//     1.6 times as far off.
+//   [Franca, Frey 1992] Stabilized finite element methods: II. The incompressible Navier-Stokes equations.
+//     CMAME 99.
+//   [Bazilevs, Gohean, Hughes, Moser, Zhang 2009] Patient-specific isogeometric fluid-structure interaction
+//     analysis. CMAME 198: an open boundary takes -rho/2 (u.n)_- u where the flow comes back.
+//   [Heywood, Rannacher, Turek 1996] Artificial boundaries and flux and pressure conditions. Int. J. Numer.
+//     Methods Fluids 22: there mu du/dn - p n is given rather than the traction, so that a developed flow
+//     goes out as it is.
+// G of a tet is the mean over the four corners that the reference tet may begin at, so that it does not
+// depend on their order; likewise over the three of a prism's triangle, with its height from -1 to 1.
 #include "simulate/flow_cell.h"
 
 #include "base/four.h"
@@ -28,7 +33,7 @@
 namespace kropla {
 namespace {
 
-constexpr double of_inverse_estimate = 9;  // [-] tau_M = h^2 / (12 nu) on a line from -1 to 1 [Franca, Frey 1992]
+constexpr double of_inverse_estimate = 9;  // [-] C: on a line tau_M is h^2 / (12 nu) [Franca, Frey 1992]
 
 using Matrix3 = std::array<Vec3, 3>;  // by rows
 
@@ -76,13 +81,15 @@ FlowCell<n> gather(const FlowStage& stage, const Name& name) {
     return cell;
 }
 
-/// The gradients of the coordinates of the reference cell, with the weights of their squares in the metric tensor.
+/// The gradients of the coordinates of the reference cell, with the weights of their squares in the metric
+/// tensor.
 template <std::size_t n>
 struct Directions {
     static constexpr std::size_t count = 4;
     std::array<Vec3, count> gradient;  // [1/m]
-    static constexpr std::array<double, count> weight = n == 4 ? std::array<double, 4>{0.75, 0.75, 0.75, 0.75}
-                                                               : std::array<double, 4>{2.0 / 3, 2.0 / 3, 2.0 / 3, 4};
+    static constexpr std::array<double, count> weight =
+        n == 4 ? std::array<double, 4>{0.75, 0.75, 0.75, 0.75}
+               : std::array<double, 4>{2.0 / 3, 2.0 / 3, 2.0 / 3, 4};
 };
 
 Directions<4> directions(const std::array<Vec3, 4>& gradient) { return {gradient}; }
@@ -110,12 +117,14 @@ Times intrinsic_times(const FlowCell<n>& cell, const Directions<n>& of, const Ve
     }
     const double trace = squares.x + squares.y + squares.z;
     const double kinematic = cell.viscosity / cell.density;
-    const double viscous = of_inverse_estimate * kinematic * kinematic * (squared_norm(squares) + 2 * squared_norm(products));
+    const double viscous =
+        of_inverse_estimate * kinematic * kinematic * (squared_norm(squares) + 2 * squared_norm(products));
     return {1 / (std::sqrt(4 * cell.per_time * cell.per_time + crossing + viscous) * cell.density),
             crossing > 0 ? cell.density * crossing / (std::sqrt(crossing + viscous) * trace) : 0};
 }
 
-/// The means over the part of a cell that point k stands for of phi_i times what has these values at the corners.
+/// The means over the part of a cell that point k stands for of phi_i times what has these values at the
+/// corners.
 template <std::size_t n>
 std::array<Vec3, n> means_with_shapes(const std::array<Vec3, n>& values, const Vec3& mean, std::size_t k) {
     std::array<Vec3, n> means;
@@ -164,18 +173,22 @@ FlowPoint<n> flow_point(const FlowCell<n>& cell, const CellPoint<n>& at, std::si
 }
 
 template <std::size_t n>
-void add_residual(const FlowCell<n>& cell, const FlowPoint<n>& at, std::array<double, block_size * n>& residual) {
+void add_residual(const FlowCell<n>& cell, const FlowPoint<n>& at,
+                  std::array<double, block_size * n>& residual) {
     const Matrix3& du = at.du;
     const double isotropic = at.tau.volume * at.divergence - at.pressure;
-    const Matrix3 stress = {cell.viscosity * (du[0] + Vec3{du[0].x, du[1].x, du[2].x}) + Vec3{isotropic, 0, 0},
-                            cell.viscosity * (du[1] + Vec3{du[0].y, du[1].y, du[2].y}) + Vec3{0, isotropic, 0},
-                            cell.viscosity * (du[2] + Vec3{du[0].z, du[1].z, du[2].z}) + Vec3{0, 0, isotropic}};
+    const Matrix3 stress = {
+        cell.viscosity * (du[0] + Vec3{du[0].x, du[1].x, du[2].x}) + Vec3{isotropic, 0, 0},
+        cell.viscosity * (du[1] + Vec3{du[0].y, du[1].y, du[2].y}) + Vec3{0, isotropic, 0},
+        cell.viscosity * (du[2] + Vec3{du[0].z, du[1].z, du[2].z}) + Vec3{0, 0, isotropic}};
     for (std::size_t i = 0; i < n; ++i) {
         const Vec3 &g = at.gradient[i], &carried = at.carried[i];
         const Vec3 convected{dot(carried, du[0]), dot(carried, du[1]), dot(carried, du[2])};
-        const Vec3 sum = cell.density * convected + at.inertia[i] + Vec3{dot(stress[0], g), dot(stress[1], g), dot(stress[2], g)} +
+        const Vec3 sum = cell.density * convected + at.inertia[i] +
+                         Vec3{dot(stress[0], g), dot(stress[1], g), dot(stress[2], g)} +
                          at.tau.momentum * cell.density * at.along[i] * at.residual;
-        for (int m = 0; m < 3; ++m) residual[block_size * i + static_cast<std::size_t>(m)] += at.volume * sum[m];
+        for (int m = 0; m < 3; ++m)
+            residual[block_size * i + static_cast<std::size_t>(m)] += at.volume * sum[m];
         residual[block_size * i + 3] +=
             at.volume * (at.means.value[i] * at.divergence + at.tau.momentum * dot(g, at.residual));
     }
@@ -195,15 +208,16 @@ void put(const Four& column, double* to) {
 
 Four four(const Vec3& a, double last) { return Four(Four::Register{a.x, a.y, a.z, last}); }
 
-/// The derivative, column by column of each block, three of momentum and one of volume at once. tau and the weight of
-/// SUPG are taken as they are.
+/// The derivative, column by column of each block, three of momentum and one of volume at once. tau and the
+/// weight of SUPG are taken as they are.
 template <bool add, std::size_t n>
 void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<n>& blocks) {
     const double density = cell.density, volume = at.volume, tau = at.tau.momentum;
     const double newton = cell.convection ? volume * density : 0;
     const std::array<Four, 3> unit = {four({1, 0, 0}, 0), four({0, 1, 0}, 0), four({0, 0, 1}, 0)};
     std::array<Four, 3> du;  // by columns
-    for (int c = 0; c < 3; ++c) du[static_cast<std::size_t>(c)] = four({at.du[0][c], at.du[1][c], at.du[2][c]}, 0);
+    for (int c = 0; c < 3; ++c)
+        du[static_cast<std::size_t>(c)] = four({at.du[0][c], at.du[1][c], at.du[2][c]}, 0);
     std::array<double, n> follows;  // of r by u_j, but for a change of a
     std::array<Four, n> gradient;   // with what the volume's row has of `follows`, in terms of the viscosity
     for (std::size_t j = 0; j < n; ++j) {
@@ -216,7 +230,8 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
         const Vec3 viscous = volume * cell.viscosity * gi, steered = volume * tau * gi;
         const Four compressed = four(volume * at.tau.volume * gi, volume * at.means.value[i]);
         const Vec3 turned = newton * tau * (gi.x * at.du[0] + gi.y * at.du[1] + gi.z * at.du[2]);
-        const Four turning = cell.convection ? volume * tau * density * four(at.residual, 0) : Four(0);  // of the weight
+        const Four turning =
+            cell.convection ? volume * tau * density * four(at.residual, 0) : Four(0);  // of the weight
         const Four pushed = four(-volume * gi, 0), along = volume * weight * four({1, 1, 1}, 0);
         for (std::size_t j = 0; j < n; ++j) {
             const Vec3& gj = at.gradient[j];
@@ -232,14 +247,17 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
                              four({}, value * turned[c]),
                          block + block_size * column);
             }
-            put<add>(along * gradient[j] + Four(value) * pushed + four({}, dot(steered, gj)), block + block_size * 3);
+            put<add>(along * gradient[j] + Four(value) * pushed + four({}, dot(steered, gj)),
+                     block + block_size * 3);
         }
     }
 }
 
-/// An open facet of a tet, opposite `corner`. On one viscosity, the transposed gradient has no part in what is given.
-void add_open_facet(const FlowStage& stage, const FlowCell<4>& cell, const CellPoint<4>& at, std::size_t corner,
-                    const Array<Vertex, double>& pressure, bool derivative, CellBlocks<4>& blocks) {
+/// An open facet of a tet, opposite `corner`: the transposed gradient has no part in what is given. As div u
+/// = 0, that part, (grad u)^T n - (div u) n, is of derivatives along the facet alone, and symmetric.
+void add_open_facet(const FlowStage& stage, const FlowCell<4>& cell, const CellPoint<4>& at,
+                    std::size_t corner, const Array<Vertex, double>& pressure, bool derivative,
+                    CellBlocks<4>& blocks) {
     const Vec3 area = -3 * at.volume_gradient[corner];  // out of the domain
     std::array<Vec3, 4> gradient;
     Matrix3 du = {};
@@ -250,20 +268,22 @@ void add_open_facet(const FlowStage& stage, const FlowCell<4>& cell, const CellP
     double sum = 0;
     for (int c : tet_facets[corner])
         if (!pressure.empty()) sum += pressure[cell.vertex[static_cast<std::size_t>(c)]];
-    const Vec3 transposed = area.x * du[0] + area.y * du[1] + area.z * du[2];  // (grad u)^T as it acts on the area
+    const Vec3 transposed =
+        area.x * du[0] + area.y * du[1] + area.z * du[2] - (du[0].x + du[1].y + du[2].z) * area;
     for (int local : tet_facets[corner]) {
         const auto i = static_cast<std::size_t>(local);
         const double given = pressure.empty() ? 0 : (sum + pressure[cell.vertex[i]]) / 12;
         const double back = stage.convection ? std::min(dot(cell.velocity[i], area), 0.0) : 0;
-        const Vec3 more = given * area - (cell.viscosity / 3) * transposed - (cell.density * back / 6) * cell.velocity[i];
+        const Vec3 more =
+            given * area - (cell.viscosity / 3) * transposed - (cell.density * back / 6) * cell.velocity[i];
         for (int m = 0; m < 3; ++m) blocks.residual[block_size * i + static_cast<std::size_t>(m)] += more[m];
         if (!derivative) continue;
         for (std::size_t m = 0; m < 3; ++m) blocks.block(i, i)[block_size * m + m] -= cell.density * back / 6;
         for (std::size_t j = 0; j < 4; ++j)
             for (int c = 0; c < 3; ++c)
                 for (int m = 0; m < 3; ++m)
-                    blocks.block(i, j)[block_size * static_cast<std::size_t>(c) + static_cast<std::size_t>(m)] -=
-                        cell.viscosity / 3 * area[c] * gradient[j][m];
+                    blocks.block(i, j)[static_cast<std::size_t>(4 * c + m)] -=
+                        cell.viscosity / 3 * (area[c] * gradient[j][m] - area[m] * gradient[j][c]);
     }
 }
 
@@ -282,9 +302,11 @@ void add_cell_points(const FlowStage& stage, const Name& name, bool derivative, 
     if constexpr (n == 4) {
         for (std::size_t corner = 0; corner < 4; ++corner) {
             const Patch patch = stage.mesh.patch[name][corner];
-            if (!patch.exists() || patch.value >= box_faces || !stage.open[static_cast<std::size_t>(patch.value)]) continue;
-            add_open_facet(stage, cell, points[0], corner, stage.open_pressure[static_cast<std::size_t>(patch.value)],
-                           derivative, blocks);
+            if (!patch.exists() || patch.value >= box_faces ||
+                !stage.open[static_cast<std::size_t>(patch.value)])
+                continue;
+            add_open_facet(stage, cell, points[0], corner,
+                           stage.open_pressure[static_cast<std::size_t>(patch.value)], derivative, blocks);
         }
     }
 }

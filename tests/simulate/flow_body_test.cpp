@@ -48,7 +48,8 @@ TEST(FlowBody, DragOfASphereAsStokesHasIt) {
     EXPECT_LT(std::abs(b), 0.0235);  // 768 triangles on the sphere
 }
 
-// K = 1.601688 for a radius of 0.2 half-widths: a method of fundamental solutions, see the handbook's section 1.4.
+// K = 1.601688 for a radius of 0.2 half-widths: a method of fundamental solutions, see the handbook's section
+// 1.4.
 TEST(FlowBody, DragOfASphereThatMovesInAClosedCube) {
     FlowOptions options = stokes({});
     options.bodies.push_back([](double) { return RigidVelocity{{}, {0, 0, 1}, {}}; });
@@ -74,7 +75,8 @@ TEST(FlowBody, TorqueOnASphereThatSpins) {
 }
 
 // A cube on its way through a closed box that moves as its mesh does.
-FlowState pushed(const FlowOptions& options, const Ranks& ranks, double length, double time, FlowReport& report) {
+FlowState pushed(const FlowOptions& options, const Ranks& ranks, double length, double time,
+                 FlowReport& report) {
     const Mesh start = cube_with_layers(4, false);
     const auto at = [&](int step) {
         Mesh mesh = moved(start, {0.02 * step, 0, -0.01 * step}, 0.02 * step, 0.003, unsigned(step));
@@ -114,8 +116,8 @@ TEST(FlowBody, UnitsAreOfNoMatter) {
         const FlowState state =
             pushed(in_a_box(density, 0.01 * viscosity), petsc().all_ranks(), u.length, 0.1 * u.time, others);
         EXPECT_LT(largest_difference(reference, state, u.length / u.time, viscosity / u.time), 1e-7);
-        EXPECT_NEAR(others.bodies[0].force.x * u.time * u.time / (u.mass * u.length), metres.bodies[0].force.x,
-                    1e-7 * norm(metres.bodies[0].force));
+        EXPECT_NEAR(others.bodies[0].force.x * u.time * u.time / (u.mass * u.length),
+                    metres.bodies[0].force.x, 1e-7 * norm(metres.bodies[0].force));
         EXPECT_LE(std::abs(others.iterations - metres.iterations), 1);
     }
 }
@@ -123,7 +125,8 @@ TEST(FlowBody, UnitsAreOfNoMatter) {
 TEST(FlowBody, ABodyThatMovesPushesAsMuchAwayAsItLetsIn) {
     FlowReport report;
     pushed(in_a_box(1, 0.01), petsc().all_ranks(), 1, 0.1, report);
-    // Chords of a turn by 0.02 in a time of 0.1 are no rigid velocity: so much, 0.02^2 / 0.1 of the volume, it grows.
+    // Chords of a turn by 0.02 in a time of 0.1 are no rigid velocity: so much, 0.02^2 / 0.1 of the volume,
+    // it grows.
     EXPECT_LT(std::abs(report.bodies[0].flux), 0.02 * 0.02 / 0.1 * 0.35 * 0.35 * 0.35);
     EXPECT_LT(report.bodies[0].force.x, 0);            // it is held back
 }
