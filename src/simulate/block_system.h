@@ -16,19 +16,22 @@ namespace kropla {
 inline constexpr std::size_t block_size = 4;
 inline constexpr std::size_t block_entries = block_size * block_size;
 
-/// What a cell of n corners adds to the rows of its corners: the block of row i and column j from block_entries * (n i + j)
-/// on, column by column as PETSc keeps blocks, and the residual of row i.
+/// What a cell of n corners adds to the rows of its corners: the block of row i and column j from
+/// block_entries * (n i + j) on, column by column as PETSc keeps blocks, and the residual of row i.
 template <std::size_t n>
 struct CellBlocks {
-    std::array<double, block_entries * n * n> matrix;
+    alignas(32) std::array<double, block_entries * n * n> matrix;
     std::array<double, block_size * n> residual;
 
-    [[nodiscard]] double* block(std::size_t i, std::size_t j) { return matrix.data() + block_entries * (n * i + j); }
+    [[nodiscard]] double* block(std::size_t i, std::size_t j) {
+        return matrix.data() + block_entries * (n * i + j);
+    }
 };
 
-/// A pattern whose rows are shared out in parts, near each other in space, with the cells at each: what one thread
-/// assembles by itself. Cells astride two parts are asked for by both, so that nothing is kept of a cell, every row has
-/// its sum in the cells' order and no two threads write to one row: the same bits for any number of threads and of ranks.
+/// A pattern whose rows are shared out in parts, near each other in space, with the cells at each: what one
+/// thread assembles by itself. Cells astride two parts are asked for by both, so that nothing is kept of a
+/// cell, every row has its sum in the cells' order and no two threads write to one row: the same bits for any
+/// number of threads and of ranks.
 struct BlockPattern {
     struct Part {
         std::size_t first_row, end_row;            // owned rows
@@ -47,12 +50,12 @@ struct BlockSystem {
     [[nodiscard]] double* block(std::size_t place) { return value.data() + block_entries * place; }
 };
 
-/// Adds the residual of one cell, and its blocks if they are wanted, to the rows of the part. `next` is, for each
-/// row of the part, the place of its next cell in `at.cells`.
+/// Adds the residual of one cell, and its blocks if they are wanted, to the rows of the part. `next` is, for
+/// each row of the part, the place of its next cell in `at.cells`.
 template <std::size_t n>
-void add_cell(const SparseRows& rows, const CellsAtRows<n>& at, const BlockPattern::Part& part, std::size_t cell,
-              const std::array<std::size_t, n>& row_of_corner, CellBlocks<n>& blocks, bool matrix,
-              std::vector<std::size_t>& next, BlockSystem& system) {
+void add_cell(const SparseRows& rows, const CellsAtRows<n>& at, const BlockPattern::Part& part,
+              std::size_t cell, const std::array<std::size_t, n>& row_of_corner, CellBlocks<n>& blocks,
+              bool matrix, std::vector<std::size_t>& next, BlockSystem& system) {
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t row = row_of_corner[i];  // huge if before the first
         if (row < part.first_row || row >= part.end_row) continue;
@@ -71,29 +74,32 @@ void add_cell(const SparseRows& rows, const CellsAtRows<n>& at, const BlockPatte
     }
 }
 
-/// Fills the residual, and the matrix if it is wanted (else it stays), by `kernel(cell, CellBlocks<n>&)`, which is asked
-/// from several threads at once and sets all that is wanted of a cell. Throws Interrupted if the watch says so.
+/// Fills the residual, and the matrix if it is wanted (else it stays), by `kernel(cell, CellBlocks<n>&)`,
+/// which is asked from several threads at once and sets all that is wanted of a cell. Throws Interrupted if
+/// the watch says so.
 template <class Kernel>
 void assemble_blocks(const Mesh& mesh, const BlockPattern& blocks, const Kernel& kernel, bool matrix,
                      BlockSystem& system, const Watch* watch) {
     const Pattern& pattern = blocks.pattern;
     system.residual.resize(block_size * pattern.rows.count());
-    const auto add_all = [&]<std::size_t n>(const BlockPattern::Part& part, const CellsAtRows<n>& at, const auto& names,
-                                            const std::vector<std::uint32_t>& cells) {
+    const auto add_all = [&]<std::size_t n>(const BlockPattern::Part& part, const CellsAtRows<n>& at,
+                                            const auto& names, const std::vector<std::uint32_t>& cells) {
         CellBlocks<n> of_cell;
         std::vector<std::size_t> next(at.begin.begin() + static_cast<std::ptrdiff_t>(part.first_row),
                                       at.begin.begin() + static_cast<std::ptrdiff_t>(part.end_row));
-        for (std::uint32_t c : cells) {
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            if (k % 4096 == 0) heed(watch);
+            const std::uint32_t c = cells[k];
             const auto vertices = cell_vertices(mesh, names[c]);
             std::array<std::size_t, n> row;
             for (std::size_t i = 0; i < n; ++i)
-                row[i] = static_cast<std::size_t>(pattern.numbering.row[vertices[i]] - pattern.rows.first_row);
+                row[i] =
+                    static_cast<std::size_t>(pattern.numbering.row[vertices[i]] - pattern.rows.first_row);
             kernel(names[c], of_cell);
             add_cell(pattern.rows, at, part, c, row, of_cell, matrix, next, system);
         }
     };
     for_all(blocks.parts.size(), [&](std::size_t p) {
-        heed(watch);
         const BlockPattern::Part& part = blocks.parts[p];
         const auto rows = [&](std::size_t row) { return static_cast<std::ptrdiff_t>(row); };
         std::fill(system.residual.begin() + rows(block_size * part.first_row),

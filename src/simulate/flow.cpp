@@ -35,10 +35,11 @@ void check_flow(const FlowOptions& options, const Mesh& mesh) {
     if (!any) throw CaseError(options.key + ".region: no region is a liquid or gas");
     if (!is_finite(options.gravity)) throw CaseError(options.key + ".gravity must be finite");
     if (!(options.tolerance > 0 && options.tolerance < 1))
-        throw CaseError(options.key + ".tolerance must be between 0 and 1, got " + std::to_string(options.tolerance));
+        throw CaseError(options.key + ".tolerance must be between 0 and 1, got " +
+                        std::to_string(options.tolerance));
     if (count_regions(mesh) != options.regions.size())
-        throw CaseError(options.key + ".region: the mesh has " + std::to_string(count_regions(mesh)) + " regions, given are " +
-                        std::to_string(options.regions.size()));
+        throw CaseError(options.key + ".region: the mesh has " + std::to_string(count_regions(mesh)) +
+                        " regions, given are " + std::to_string(options.regions.size()));
 }
 
 FlowState still_flow(const Mesh& mesh) {

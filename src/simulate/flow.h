@@ -15,18 +15,22 @@ namespace kropla {
 
 // The incompressible Navier-Stokes equations on a moving mesh, material by region:
 //     rho (du/dt + (u - w) . grad u) = div(-p + mu (grad u + grad u^T)) + rho g + f,    div u = 0,
-// du/dt at a vertex that moves with the mesh's velocity w, in the non-conservative form, which keeps a uniform flow on
-// any moving mesh. Velocity and pressure are linear in tets, and linear along and across columns in prisms, stabilised
-// by the residual: SUPG, PSPG and grad-div (flow_cell.cpp). Density, viscosity and the stabilisation's times are of one
-// region each; at interfaces of liquids and gases velocity and pressure are continuous.
+// du/dt at a vertex that moves with the mesh's velocity w, in the non-conservative form, which keeps a
+// uniform flow on any moving mesh. Velocity and pressure are linear in tets, and linear along and across
+// columns in prisms, stabilised by the residual: SUPG, PSPG and grad-div (flow_cell.cpp). Density, viscosity
+// and the stabilisation's times are of one region each; at interfaces of liquids and gases velocity and
+// pressure are continuous.
 //
-// As the mesh moves and is remade from step to step, nothing but the state at the step's begin is used: a step of the
-// second order is two stages of the method SDIRK2, gamma = 1 - 1/sqrt 2, which is L-stable and ends at its last stage
+// As the mesh moves and is remade from step to step, nothing but the state at the step's begin is used: a
+// step of the second order is two stages of the method SDIRK2, gamma = 1 - 1/sqrt 2, which is L-stable and
+// ends at its last stage,
 //   [Alexander 1977] Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s. SIAM J. Numer. Anal. 14.
-// Each stage is a step of backward Euler of length gamma dt on the mesh at its time, between the two of the step:
-//     (u1 - u0) / (gamma dt)  at t + gamma dt,     (u - u*) / (gamma dt)  at t + dt,     u* = u0 + (1 - gamma)/gamma (u1 - u0).
-// Where a velocity g is given, u* = g(t + dt) - gamma dt g'(t + dt) is prescribed, not u1 = g(t + gamma dt): the rate of the
-// last stage then is g', and the pressure, which depends on it, is of second order too.
+// Each stage is a step of backward Euler of length gamma dt on the mesh at its time, between the two of the
+// step:
+//     (u1 - u0) / (gamma dt)  at t + gamma dt,     u* = u0 + (1 - gamma)/gamma (u1 - u0),
+//     (u - u*) / (gamma dt)   at t + dt.
+// Where a velocity g is given, u* = g(t + dt) - gamma dt g'(t + dt) is prescribed, not u1 = g(t + gamma dt):
+// the rate of the last stage then is g', and the pressure, which depends on it, is of second order too.
 
 /// Velocity per direction at a place [m] and a time [s]; what is empty is zero.
 using VectorQuantity = std::array<Quantity, 3>;
@@ -49,7 +53,7 @@ struct FlowFace {
         wall,      ///< no slip
         slip,      ///< the normal velocity is zero, and the shear stress
         velocity,  ///< given
-        open,      ///< mu du/dn - p n = -pressure n; what flows back in brings no energy
+        open,      ///< mu du/dn - p n = -pressure n; where it flows in, as from rest: less rho/2 u_n^2
     } kind = Kind::wall;
     VectorQuantity velocity = {};  // [m/s] of a face with a velocity
     Quantity pressure = {};        // [Pa] of an open face; empty: zero
@@ -58,18 +62,20 @@ struct FlowFace {
 enum class FlowScheme {
     second_order,  ///< SDIRK2
     first_order,   ///< backward Euler: for a few steps after a start, or towards a steady state
-    steady,        ///< no rates, and a mesh that rests: the state that lasts with the surfaces' present velocities
+    steady,  ///< no rates, and a mesh that rests: what lasts with the surfaces' present velocities
 };
 
 struct FlowOptions {
-    std::vector<std::optional<FlowRegion>> regions;  // region 0, 1, ...: a liquid or gas, or nothing: a solid body
-    std::vector<std::function<RigidVelocity(double t)>> bodies = {};  // velocities of regions 1, 2, ...; empty, or fewer:
-                                                                      //   that of the mesh, (x1 - x0) / dt
+    // Of region 0, 1, ...: a liquid or gas, or nothing: a solid body.
+    std::vector<std::optional<FlowRegion>> regions;
+    // Velocities of regions 1, 2, ...; of those that are empty, or not there: the mesh's, (x1 - x0) / dt, which
+    // is of first order in time where a body accelerates.
+    std::vector<std::function<RigidVelocity(double t)>> bodies = {};
     Vec3 gravity = {};                     // [m/s^2]
     bool convection = true;                // false: Stokes
     std::array<FlowFace, 6> faces = {};    // x min, x max, y min, y max, z min, z max
     FlowScheme scheme = FlowScheme::second_order;
-    double tolerance = 1e-4;  // [-] of the first residual, of either stage: where Newton's method ends
+    double tolerance = 1e-3;  // [-] of the first residual, of either stage: where Newton's method ends
     int most_passes = 20;     // of it
     std::string key = "flow";  // of what messages speak
 };
@@ -95,24 +101,24 @@ struct FlowReport {
     std::vector<BodyForce> bodies = {};    // of solid ones
     std::array<double, 6> face_flux = {};  // [m^3/s] out through each face
     std::array<Vec3, 6> face_force = {};   // [N] on each face; nothing where it is open
-    double net_flux = 0;       // [m^3/s] out of everything: zero but for the discrete boundary's rounding and shape
+    double net_flux = 0;  // [m^3/s] out of everything: zero but for the shape of what is given, by facets
     double largest_courant = 0;  // [-] heights of a cell that the flow crosses in the step
 };
 
-/// Throws CaseError, naming the key below `flow`, if a density or viscosity is not positive, gravity is not finite, or the
-/// mesh has other regions.
+/// Throws CaseError, naming the key below `flow`, if a density or viscosity is not positive, gravity is not
+/// finite, or the mesh has other regions.
 void check_flow(const FlowOptions& options, const Mesh& mesh);
 
 /// At rest, without pressure.
 [[nodiscard]] FlowState still_flow(const Mesh& mesh);
 
-/// Takes the flow from t [s] on `before` to t + dt on `current`: the same connectivity. `temperature` [K] at the end of
-/// the step may be empty where no property depends on it. Without an open face the mean of the pressure is zero. Where
-/// faces meet, a wall holds, then the first one with a velocity, then slip. All ranks call it together with the same
-/// arguments, and all get the whole state. The solver's options have the prefix flow_: -flow_ksp_type, -flow_pc_type.
-/// Throws CaseError as check_flow, or if dt is not positive, a quantity not finite or what flows in has no way out;
-/// SolverError if the solver or Newton's method does not converge; Interrupted if the watch of the ranks says so. Then
-/// `state` is untouched.
+/// Takes the flow from t [s] on `before` to t + dt on `current`: the same connectivity. `temperature` [K] at
+/// the end of the step may be empty where no property depends on it. Without an open face the mean of the
+/// pressure is zero. Where faces meet, a wall holds, then the first one with a velocity, then slip. All ranks
+/// call it together with the same arguments, and all get the whole state. The solver's options have the
+/// prefix flow_: -flow_ksp_type, -flow_pc_type. Throws CaseError as check_flow, or if dt is not positive, a
+/// quantity not finite or what flows in has no way out; SolverError if the solver or Newton's method does not
+/// converge; Interrupted if the watch of the ranks says so. Then `state` is untouched.
 FlowReport step_flow(const Ranks& ranks, const Mesh& before, const Mesh& current, const FlowOptions& options,
                      FlowState& state, double t, double dt, const Array<Vertex, double>& temperature = {});
 

@@ -28,7 +28,8 @@ struct FlowStage {
     bool convection;
 };
 
-/// The cell's part of the residual, rows of momentum [N] and of volume [m^3/s]; and of its derivative if it is wanted.
+/// The cell's part of the residual, rows of momentum [N] and of volume [m^3/s]; and of its derivative if it
+/// is wanted.
 void flow_cell(const FlowStage& stage, Tet t, bool derivative, CellBlocks<4>& blocks);
 void flow_cell(const FlowStage& stage, const Prism& prism, bool derivative, CellBlocks<6>& blocks);
 

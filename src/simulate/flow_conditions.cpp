@@ -12,7 +12,8 @@
 namespace kropla {
 namespace {
 
-constexpr double unbalanced = 0.01;  // [-] of all that passes the boundary: beyond what its facets' shape explains
+constexpr double unbalanced =
+    0.01;  // [-] of all that passes the boundary: beyond what its facets' shape explains
 constexpr std::array<const char*, 6> face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
 bool is_fluid(const FlowOptions& options, Region region) {
@@ -57,8 +58,8 @@ Vec3 value_of(const VectorQuantity& quantity, const Vec3& place, double t) {
 
 [[noreturn]] void refuse(const std::string& key, const Vec3& value, const Vec3& place, double t) {
     std::ostringstream message;
-    message << key << " must be finite, got (" << value.x << ", " << value.y << ", " << value.z << ") at (" << place.x
-            << ", " << place.y << ", " << place.z << ") m, t = " << t << " s";
+    message << key << " must be finite, got (" << value.x << ", " << value.y << ", " << value.z << ") at ("
+            << place.x << ", " << place.y << ", " << place.z << ") m, t = " << t << " s";
     throw CaseError(message.str());
 }
 
@@ -70,8 +71,9 @@ struct Step {
     double t, dt;
 };
 
-/// A velocity that is given at all times, at a vertex on its way: at the step's end, with its rate there by the parabola
-/// through three times. A steady state has no rates, and a mesh that stands where it is at the end.
+/// A velocity that is given at all times, at a vertex on its way: at the step's end, with its rate there by
+/// the parabola through three times. A steady state has no rates, and a mesh that stands where it is at the
+/// end.
 template <class Given>
 void fix(const Step& step, Vertex v, const Given& given, const std::string& key, FlowConditions& conditions) {
     const Vec3 &x0 = step.before.position[v], &x1 = step.current.position[v];
@@ -80,16 +82,21 @@ void fix(const Step& step, Vertex v, const Given& given, const std::string& key,
     conditions.end[v] = given(x1, end);
     conditions.rate[v] = {};
     if (step.options.scheme == FlowScheme::second_order)
-        conditions.rate[v] = (1 / step.dt) * (given(x0, step.t) - 4 * given(0.5 * (x0 + x1), step.t + 0.5 * step.dt) +
-                                              3 * conditions.end[v]);
-    if (!is_finite(conditions.end[v]) || !is_finite(conditions.rate[v])) refuse(key, conditions.end[v], x1, end);
+        conditions.rate[v] =
+            (1 / step.dt) *
+            (given(x0, step.t) - 4 * given(0.5 * (x0 + x1), step.t + 0.5 * step.dt) + 3 * conditions.end[v]);
+    if (!is_finite(conditions.end[v]) || !is_finite(conditions.rate[v]))
+        refuse(key, conditions.end[v], x1, end);
 }
 
-void fix_face(const Step& step, std::size_t face, const std::vector<Vertex>& vertices, FlowConditions& conditions) {
+void fix_face(const Step& step, std::size_t face, const std::vector<Vertex>& vertices,
+              FlowConditions& conditions) {
     const std::string key = step.options.key + ".face." + face_names[face] + ".velocity";
     const VectorQuantity& velocity = step.options.faces[face].velocity;
     for (Vertex v : vertices)
-        fix(step, v, [&](const Vec3& place, double t) { return value_of(velocity, place, t); }, key, conditions);
+        fix(
+            step, v, [&](const Vec3& place, double t) { return value_of(velocity, place, t); }, key,
+            conditions);
 }
 
 void let_slip(std::size_t face, const std::vector<Vertex>& vertices, FlowConditions& conditions) {
@@ -98,7 +105,8 @@ void let_slip(std::size_t face, const std::vector<Vertex>& vertices, FlowConditi
 
 void fix_solid(const Step& step, const SolidSurface& solid, FlowConditions& conditions) {
     if (const auto* const motion = motion_of(step.options, solid.body); motion != nullptr) {
-        const std::string key = step.options.key + ".region." + std::to_string(solid.body.value) + ".velocity";
+        const std::string key =
+            step.options.key + ".region." + std::to_string(solid.body.value) + ".velocity";
         const auto given = [&](const Vec3& place, double t) { return rigid_velocity((*motion)(t), place); };
         for (Vertex v : solid.vertices) fix(step, v, given, key, conditions);
         return;
@@ -130,8 +138,9 @@ void check_way_out(const Step& step, const FlowBoundary& boundary, const FlowCon
     for (const SolidSurface& solid : boundary.solids) add(solid.facets);
     if (std::abs(net) <= unbalanced * sizes) return;
     std::ostringstream message;
-    message << step.options.key << ": " << std::abs(net) << " m^3/s flow " << (net < 0 ? "in without a way out" : "out and nothing in")
-            << " at t = " << step.t + step.dt << " s: open a face, or let the given velocities balance";
+    message << step.options.key << ": " << std::abs(net) << " m^3/s flow "
+            << (net < 0 ? "in without a way out" : "out and nothing in") << " at t = " << step.t + step.dt
+            << " s: open a face, or let the given velocities balance";
     throw CaseError(message.str());
 }
 
@@ -171,7 +180,8 @@ FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double 
 }
 
 FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const FlowOptions& options,
-                               const FlowBoundary& boundary, const Array<Vertex, Vec3>& velocity, double t, double dt) {
+                               const FlowBoundary& boundary, const Array<Vertex, Vec3>& velocity, double t,
+                               double dt) {
     const std::size_t count = current.position.size();
     FlowConditions conditions{Array<Vertex, std::array<bool, 3>>(count, {false, false, false}),
                               Array<Vertex, Vec3>(count), Array<Vertex, Vec3>(count), {}, true};
@@ -184,7 +194,8 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
         if (conditions.open[face] && !vertices[face].empty()) conditions.closed = false;
     }
     for (std::size_t face = 6; face-- > 0;)
-        if (options.faces[face].kind == FlowFace::Kind::velocity) fix_face(step, face, vertices[face], conditions);
+        if (options.faces[face].kind == FlowFace::Kind::velocity)
+            fix_face(step, face, vertices[face], conditions);
     for (std::size_t face = 0; face < 6; ++face)
         if (options.faces[face].kind == FlowFace::Kind::wall)
             for (Vertex v : vertices[face])
@@ -194,8 +205,9 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
     return conditions;
 }
 
-std::array<Array<Vertex, double>, 6> open_pressures(const Array<Vertex, Vec3>& position, const FlowOptions& options,
-                                                    const FlowBoundary& boundary, double t) {
+std::array<Array<Vertex, double>, 6> open_pressures(const Array<Vertex, Vec3>& position,
+                                                    const FlowOptions& options, const FlowBoundary& boundary,
+                                                    double t) {
     std::array<Array<Vertex, double>, 6> pressures;
     for (std::size_t face = 0; face < 6; ++face) {
         const Quantity& pressure = options.faces[face].pressure;
@@ -225,7 +237,8 @@ double flux_through(const std::vector<std::array<Vertex, 3>>& facets, const Arra
 Array<Region, FlowMaterial> flow_materials(const Mesh& mesh, const FlowOptions& options,
                                            const Array<Vertex, double>& temperature) {
     Array<Region, FlowMaterial> materials(options.regions.size());
-    const auto set = [&](const Property& property, const std::string& key, double& value, Array<Vertex, double>& values) {
+    const auto set = [&](const Property& property, const std::string& key, double& value,
+                         Array<Vertex, double>& values) {
         if (property.constant()) {
             value = property(0);
             return;
@@ -259,7 +272,8 @@ void set_forces(const Mesh& mesh, const Array<Vertex, Vec3>& position, const Flo
                 done[v] = 1;
                 const Vec3 value = material[r].force[v] = value_of(force, position[v], t);
                 if (!is_finite(value))
-                    refuse(options.key + ".region." + std::to_string(r.value) + ".force", value, position[v], t);
+                    refuse(options.key + ".region." + std::to_string(r.value) + ".force", value, position[v],
+                           t);
             }
         });
     }

@@ -37,22 +37,24 @@ struct FlowConditions {
 /// `t` is the time of the step's end.
 [[nodiscard]] FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t);
 
-/// Of the step from t to t + dt that starts from `velocity`. Throws CaseError if a quantity is not finite or what flows in
-/// has no way out.
-[[nodiscard]] FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const FlowOptions& options,
-                                             const FlowBoundary& boundary, const Array<Vertex, Vec3>& velocity, double t,
-                                             double dt);
+/// Of the step from t to t + dt that starts from `velocity`. Throws CaseError if a quantity is not finite or
+/// what flows in has no way out.
+[[nodiscard]] FlowConditions flow_conditions(const Mesh& before, const Mesh& current,
+                                             const FlowOptions& options, const FlowBoundary& boundary,
+                                             const Array<Vertex, Vec3>& velocity, double t, double dt);
 
-/// The pressure given at open faces, at vertices that stand there at time t. Throws CaseError if it is not finite.
+/// The pressure given at open faces, at vertices that stand there at time t. Throws CaseError if it is not
+/// finite.
 [[nodiscard]] std::array<Array<Vertex, double>, 6> open_pressures(const Array<Vertex, Vec3>& position,
                                                                   const FlowOptions& options,
                                                                   const FlowBoundary& boundary, double t);
 
 /// [m^3/s] through facets, along their normals.
-[[nodiscard]] double flux_through(const std::vector<std::array<Vertex, 3>>& facets, const Array<Vertex, Vec3>& position,
-                                  const Array<Vertex, Vec3>& velocity);
+[[nodiscard]] double flux_through(const std::vector<std::array<Vertex, 3>>& facets,
+                                  const Array<Vertex, Vec3>& position, const Array<Vertex, Vec3>& velocity);
 
-/// What the cells are filled with. Throws CaseError if a force is not finite, or a property needs a temperature.
+/// What the cells are filled with. Throws CaseError if a force is not finite, or a property needs a
+/// temperature.
 [[nodiscard]] Array<Region, FlowMaterial> flow_materials(const Mesh& mesh, const FlowOptions& options,
                                                          const Array<Vertex, double>& temperature);
 /// Sets the forces of time t, at vertices that stand there.

@@ -1,11 +1,12 @@
-// GMRES on the unknowns of a flow, vertex by vertex in blocks, each scaled by the diagonal of its own: velocities by
-// that of momentum, pressures by that of PSPG, rows likewise, so that neither units nor contrasts matter. Where momentum
-// is mostly held by mass, incomplete factors of the blocks precondition it. Where viscosity passes it on far, it is block
-// triangular: a cycle of multigrid per direction of the velocity, and for the pressure
+// GMRES on the unknowns of a flow, vertex by vertex in blocks, each scaled by the diagonal of its own:
+// velocities by that of momentum, pressures by that of PSPG, rows likewise, so that neither units nor
+// contrasts matter. Where momentum is mostly held by mass, incomplete factors of the blocks precondition it.
+// Where viscosity passes it on far, it is block triangular: a cycle of multigrid per direction of the
+// velocity, and for the pressure
 //     S^-1 = mu M^-1 + (rho/dt) K^-1,
 // M lumped and K the Laplacian, which multigrid inverts.
-//   [Cahouet, Chabard 1988] Some fast 3D finite element solvers for the generalized Stokes problem. Int. J. Numer.
-//     Methods Fluids 8.
+//   [Cahouet, Chabard 1988] Some fast 3D finite element solvers for the generalized Stokes problem. Int. J.
+//     Numer. Methods Fluids 8.
 //   [Elman, Silvester, Wathen 2014] Finite elements and fast iterative solvers: the triangular form.
 #include "simulate/flow_solver.h"
 
@@ -44,8 +45,8 @@ std::vector<double> gather_rows(const Ranks& ranks, const Numbering& numbering, 
         count.push_back(width * (numbering.first_row[r + 1] - numbering.first_row[r]));
     }
     std::vector<double> all(per_row * static_cast<std::size_t>(numbering.rows()));
-    MPI_Allgatherv(mine.data(), static_cast<int>(mine.size()), MPI_DOUBLE, all.data(), count.data(), begin.data(),
-                   MPI_DOUBLE, ranks.communicator);
+    MPI_Allgatherv(mine.data(), static_cast<int>(mine.size()), MPI_DOUBLE, all.data(), count.data(),
+                   begin.data(), MPI_DOUBLE, ranks.communicator);
     return all;
 }
 
@@ -108,12 +109,13 @@ public:
 private:
     /// As in solver.cpp: for three dimensions; those that the user gave stand.
     static void set_defaults(const std::string& prefix) {
-        constexpr std::array<std::array<const char*, 2>, 6> defaults = {{{"coarsen_type", "HMIS"},
-                                                                         {"interp_type", "ext+i"},
-                                                                         {"P_max", "4"},
-                                                                         {"strong_threshold", "0.5"},
-                                                                         {"relax_type_down", "SOR/Jacobi"},
-                                                                         {"relax_type_up", "backward-SOR/Jacobi"}}};
+        constexpr std::array<std::array<const char*, 2>, 6> defaults = {
+            {{"coarsen_type", "HMIS"},
+             {"interp_type", "ext+i"},
+             {"P_max", "4"},
+             {"strong_threshold", "0.5"},
+             {"relax_type_down", "SOR/Jacobi"},
+             {"relax_type_up", "backward-SOR/Jacobi"}}};
         for (const auto& [name, value] : defaults) {
             const std::string option = "-" + prefix + "pc_hypre_boomeramg_" + name;
             PetscBool given = PETSC_FALSE;
@@ -129,8 +131,9 @@ private:
 /// The block triangular preconditioner.
 class Triangular {
 public:
-    Triangular(const Ranks& ranks, const BlockPattern& blocks, std::span<const double> value, const PressureScales& scales,
-               const std::vector<double>& scale, const std::vector<double>& own_scale, bool closed)
+    Triangular(const Ranks& ranks, const BlockPattern& blocks, std::span<const double> value,
+               const PressureScales& scales, const std::vector<double>& scale,
+               const std::vector<double>& own_scale, bool closed)
         : ranks_(ranks), rows_(blocks.pattern.rows), value_(value), closed_(closed) {
         std::vector<double> values(rows_.column.size());
         for (std::size_t m = 0; m < 3; ++m) {
@@ -138,7 +141,8 @@ public:
             velocity_[m].emplace(ranks, scalar_matrix(ranks, rows_, values), "flow_velocity_");
         }
         for (std::size_t r = 0; r < rows_.count(); ++r)
-            for (auto k = static_cast<std::size_t>(rows_.begin[r]); k < static_cast<std::size_t>(rows_.begin[r + 1]); ++k) {
+            for (auto k = static_cast<std::size_t>(rows_.begin[r]);
+                 k < static_cast<std::size_t>(rows_.begin[r + 1]); ++k) {
                 const auto column = static_cast<std::size_t>(rows_.column[k]);
                 const bool own = rows_.column[k] == rows_.first_row + static_cast<PetscInt>(r);
                 values[k] = own_scale[block_size * r + 3] * scales.value[k] * scale[block_size * column + 3] *
@@ -167,7 +171,8 @@ public:
     }
 
 private:
-    void apply(const Cycle& cycle, const std::vector<double>& rest, std::vector<double>& found, std::size_t m) {
+    void apply(const Cycle& cycle, const std::vector<double>& rest, std::vector<double>& found,
+               std::size_t m) {
         with_entries(right_.get(), [&](double* r) {
             for (std::size_t i = 0; i < rows_.count(); ++i) r[i] = rest[block_size * i + m];
         });
@@ -180,11 +185,13 @@ private:
     /// The pressure's part of momentum; between ranks it is left out.
     void subtract_gradient(const std::vector<double>& found, std::vector<double>& rest) const {
         for_all(rows_.count(), [&](std::size_t r) {
-            for (auto k = static_cast<std::size_t>(rows_.begin[r]); k < static_cast<std::size_t>(rows_.begin[r + 1]); ++k) {
+            for (auto k = static_cast<std::size_t>(rows_.begin[r]);
+                 k < static_cast<std::size_t>(rows_.begin[r + 1]); ++k) {
                 const auto column = static_cast<std::size_t>(rows_.column[k] - rows_.first_row);
                 if (column >= rows_.count()) continue;
                 for (std::size_t m = 0; m < 3; ++m)
-                    rest[block_size * r + m] -= value_[block_entries * k + 12 + m] * found[block_size * column + 3];
+                    rest[block_size * r + m] -=
+                        value_[block_entries * k + 12 + m] * found[block_size * column + 3];
             }
         });
     }
@@ -237,11 +244,14 @@ struct FlowSolver::Parts {
         own_scale.assign(block_size * rows().count(), 1.0);
         for_all(rows().count(), [&](std::size_t r) {
             const PetscInt own = rows().first_row + static_cast<PetscInt>(r);
-            const auto begin = rows().column.begin() + rows().begin[r], end = rows().column.begin() + rows().begin[r + 1];
+            const auto begin = rows().column.begin() + rows().begin[r],
+                       end = rows().column.begin() + rows().begin[r + 1];
             const double* const block =
-                value.data() + block_entries * static_cast<std::size_t>(std::lower_bound(begin, end, own) - rows().column.begin());
+                value.data() + block_entries * static_cast<std::size_t>(std::lower_bound(begin, end, own) -
+                                                                        rows().column.begin());
             const double momentum = (std::abs(block[0]) + std::abs(block[5]) + std::abs(block[10])) / 3;
-            for (std::size_t k = 0; k < 3; ++k) own_scale[block_size * r + k] = momentum > 0 ? 1 / std::sqrt(momentum) : 1;
+            for (std::size_t k = 0; k < 3; ++k)
+                own_scale[block_size * r + k] = momentum > 0 ? 1 / std::sqrt(momentum) : 1;
             own_scale[block_size * r + 3] = block[15] > 0 ? 1 / std::sqrt(block[15]) : 1;
         });
         scale = gather_rows(ranks, blocks.pattern.numbering, block_size, own_scale);
@@ -250,7 +260,8 @@ struct FlowSolver::Parts {
     /// Calls `visit(row, k, global row of the column, c, entry)` for all entries of an owned row.
     template <class Visit>
     void for_each_entry(std::size_t row, const Visit& visit) const {
-        for (auto p = static_cast<std::size_t>(rows().begin[row]); p < static_cast<std::size_t>(rows().begin[row + 1]); ++p) {
+        for (auto p = static_cast<std::size_t>(rows().begin[row]);
+             p < static_cast<std::size_t>(rows().begin[row + 1]); ++p) {
             double* const block = value.data() + block_entries * p;
             for (std::size_t c = 0; c < block_size; ++c)
                 for (std::size_t k = 0; k < block_size; ++k)
@@ -278,9 +289,15 @@ struct FlowSolver::Parts {
         check(MatSetSizes(made, width * count, width * count, PETSC_DETERMINE, PETSC_DETERMINE));
         check(MatSetType(made, MATBAIJ));
         check(MatSetBlockSize(made, width));
-        check(MatSetOption(made, MAT_ROW_ORIENTED, PETSC_FALSE));
         check(MatSeqBAIJSetPreallocationCSR(made, width, rows().begin.data(), rows().column.data(), nullptr));
-        check(MatMPIBAIJSetPreallocationCSR(made, width, rows().begin.data(), rows().column.data(), own_value.data()));
+        if (ranks.count == 1) return;
+        std::vector<double> by_rows(own_value.size());  // of each block, which is what this way in takes
+        for (std::size_t at = 0; at < by_rows.size(); at += block_entries)
+            for (std::size_t k = 0; k < block_size; ++k)
+                for (std::size_t c = 0; c < block_size; ++c)
+                    by_rows[at + block_size * k + c] = own_value[at + block_size * c + k];
+        check(MatMPIBAIJSetPreallocationCSR(made, width, rows().begin.data(), rows().column.data(),
+                                            by_rows.data()));
     }
 
     [[nodiscard]] std::span<double> make_values() {
@@ -348,7 +365,8 @@ struct FlowSolver::Parts {
 };
 
 FlowSolver::FlowSolver(const Ranks& ranks, const BlockPattern& blocks, FlowUnknowns unknowns)
-    : parts_(new Parts{ranks, blocks, std::move(unknowns), {}, {}, {}, {}, 0, false, {}, {}, {}, {}, {}, {}}) {
+    : parts_(
+          new Parts{ranks, blocks, std::move(unknowns), {}, {}, {}, {}, 0, false, {}, {}, {}, {}, {}, {}}) {
     const std::size_t size = block_size * blocks.pattern.rows.count();
     parts_->right = make_vector(ranks, size);
     parts_->unknown = make_vector(ranks, size);
@@ -381,7 +399,10 @@ double FlowSolver::size(const std::vector<double>& residual) const {
     for (std::size_t r = 0; r < p.rows().count(); ++r) {
         const std::size_t own = static_cast<std::size_t>(p.rows().first_row) + r;
         for (std::size_t k = 0; k < block_size; ++k)
-            if (!p.fixed(own, k)) sum += std::pow(residual[block_size * r + k] * p.own_scale[block_size * r + k], 2);
+            if (!p.fixed(own, k)) {
+                const double scaled = residual[block_size * r + k] * p.own_scale[block_size * r + k];
+                sum += scaled * scaled;
+            }
     }
     return std::sqrt(total(p.ranks, sum));
 }
@@ -406,7 +427,9 @@ std::vector<double> FlowSolver::solve(const std::vector<double>& residual, doubl
         for (std::size_t r = 0; r < p.rows().count(); ++r)
             for (std::size_t k = 0; k < block_size; ++k) {
                 const std::size_t at = block_size * r + k;
-                entry[at] = p.fixed(static_cast<std::size_t>(p.rows().first_row) + r, k) ? 0 : -residual[at] * p.own_scale[at];
+                entry[at] = p.fixed(static_cast<std::size_t>(p.rows().first_row) + r, k)
+                                ? 0
+                                : -residual[at] * p.own_scale[at];
             }
     });
     KSP solver = p.solver.get();
@@ -420,7 +443,8 @@ std::vector<double> FlowSolver::solve(const std::vector<double>& residual, doubl
     p.iterations += static_cast<int>(taken);
     if (reason <= 0) {
         std::ostringstream message;
-        message << "the flow solver did not converge: " << KSPConvergedReasons[reason] << " after " << taken << " iterations";
+        message << "the flow solver did not converge: " << KSPConvergedReasons[reason] << " after " << taken
+                << " iterations";
         throw SolverError(message.str());
     }
     std::vector<double> found(p.own_scale.size());

@@ -15,9 +15,10 @@ struct FlowUnknowns {
     bool closed;
 };
 
-/// What a viscous flow's solver needs beside the matrix: the pressure's part of the inverse, see flow_solver.cpp.
+/// What a viscous flow's solver needs beside the matrix: the pressure's part of the inverse, see
+/// flow_solver.cpp.
 struct PressureScales {
-    std::vector<double> value;    // of the Laplacian, a place for each of the pattern's rows.column [m^4 s/kg]
+    std::vector<double> value;  // of the Laplacian, a place for each of the pattern's rows.column [m^4 s/kg]
     std::vector<double> viscous;  // per owned row: integral of phi_i / mu [m^3/(Pa s)]
 };
 
@@ -31,18 +32,20 @@ public:
 
     /// Where the matrix is to be assembled: BlockSystem::value.
     [[nodiscard]] std::span<double> values();
-    /// Takes the matrix that is there now; its values are overwritten. With `scales`, for large time steps and Stokes flow.
+    /// Takes the matrix that is there now; its values are overwritten. With `scales`, for large time steps
+    /// and Stokes flow.
     void take(const PressureScales* scales);
     [[nodiscard]] bool has_matrix() const;
 
-    /// The size of what is left of the equations that are not given, each by the diagonal of the matrix: units are of no
-    /// matter. Over all ranks.
+    /// The size of what is left of the equations that are not given, each by the diagonal of the matrix:
+    /// units are of no matter. Over all ranks.
     [[nodiscard]] double size(const std::vector<double>& residual) const;
-    /// The same of what the terms of the residual are each by itself, by the last matrix: of `unknown`, block_size per
-    /// global row. Below a share of this there is rounding.
+    /// The same of what the terms of the residual are each by itself, by the last matrix: of `unknown`,
+    /// block_size per global row. Below a share of this there is rounding.
     [[nodiscard]] double size_of_terms(const std::vector<double>& unknown) const;
 
-    /// block_size per global row; where the unknown is given, zero. Throws SolverError if it does not converge.
+    /// block_size per global row; where the unknown is given, zero. Throws SolverError if it does not
+    /// converge.
     [[nodiscard]] std::vector<double> solve(const std::vector<double>& residual, double tolerance);
     [[nodiscard]] int iterations() const;
 

@@ -1,6 +1,6 @@
 // One step of a flow: the stages of flow.h, each solved by Newton's method.
-//   [Dembo, Eisenstat, Steihaug 1982] Inexact Newton methods. SIAM J. Numer. Anal. 19: linear systems are solved no
-//     better than the pass deserves.
+//   [Dembo, Eisenstat, Steihaug 1982] Inexact Newton methods. SIAM J. Numer. Anal. 19: linear systems are
+//     solved no better than the pass deserves.
 // The derivative is kept from pass to pass, and from the first stage to the second, while it serves.
 #include <kropla/base/error.h>
 #include "simulate/assembly.h"
@@ -19,11 +19,14 @@ namespace kropla {
 namespace {
 
 constexpr double gamma = 1 - 1 / std::numbers::sqrt2;
-constexpr double margin = 0.3;       // [-] of what is wanted of the residual: what a linear system is solved to, and
-constexpr double forcing = 1e-3;     // [-] of the residual, at the best
+constexpr double margin = 0.3;       // [-] of what is wanted of the residual: how well systems are solved, and
+constexpr double forcing = 1e-4;     // [-] of the residual, at the best: a step's first guess is near; and
+constexpr double steady_forcing = 1e-2;  // [-] of that towards a steady state, which is far
 constexpr double stagnation = 0.5;   // [-] of the residual: a pass that leaves more got nowhere, and
 constexpr double rounding = 1e-12;   // [-] of the terms of the residual is where that is no failure
-constexpr double viscous_share = 8;  // [-] viscous to mass terms, over which multigrid is cheaper
+constexpr int many_vertices = 60000;  // where multigrid becomes cheaper than incomplete factors, if nearly
+constexpr double next_to_all = 0.95;  // [-] of the cells have rates of viscosity so many times
+constexpr double viscous_share = 2;   // [-] the others; measured at Reynolds numbers of 0 and 100
 
 Array<Vertex, Vec3> between(const Mesh& before, const Mesh& current, double share) {
     if (share == 1) return current.position;
@@ -40,7 +43,8 @@ Array<Vertex, Vec3> mesh_velocities(const Mesh& before, const Mesh& current, dou
     return velocity;
 }
 
-/// Of a conduction-like matrix, what the pressure's preconditioner needs of a cell: in `matrix` that of the Laplacian.
+/// Of a conduction-like matrix, what the pressure's preconditioner needs of a cell: in `matrix` that of the
+/// Laplacian.
 template <std::size_t n>
 CellSystem<n> pressure_cell(const CellPoints<n>& points, double laplacian, double viscous) {
     CellSystem<n> system;
@@ -48,8 +52,8 @@ CellSystem<n> pressure_cell(const CellPoints<n>& points, double laplacian, doubl
         for (std::size_t i = 0; i < n; ++i) {
             system.held[i] += viscous * points[k].volume * shape_means<n>[k].value[i];
             for (std::size_t j = 0; j < n; ++j)
-                system.matrix[i][j] +=
-                    laplacian / points[k].volume * dot(points[k].volume_gradient[i], points[k].volume_gradient[j]);
+                system.matrix[i][j] += laplacian / points[k].volume *
+                                       dot(points[k].volume_gradient[i], points[k].volume_gradient[j]);
         }
     return system;
 }
@@ -164,25 +168,29 @@ private:
         const double time = t_ + share * dt_;
         set_forces(current_, position, options_, time, material_);
         const auto open_pressure = open_pressures(position, options_, boundary_, time);
-        const FlowStage stage{current_, position, mesh_velocity_, old, guess_, material_, conditions_.open, open_pressure,
-                              options_.gravity, per_time, options_.convection};
+        const FlowStage stage{current_,         position,  mesh_velocity_,     old,
+                              guess_,           material_, conditions_.open,   open_pressure,
+                              options_.gravity, per_time,  options_.convection};
         find_shares(position);
         const bool fresh = !solver_.has_matrix();
         assemble(stage, fresh);
-        if (fresh) take_matrix(stage);
+        if (fresh) {
+            triangular_ = is_viscous(stage);
+            take_matrix(stage);
+        }
         double left = solver_.size(system_.residual);
         largest_left_ = std::max(largest_left_, left);
         const double wanted = options_.tolerance * largest_left_;
         for (int pass = 1; left > wanted; ++pass) {
-            if (getenv("DBG")) fprintf(stderr, "pass %d left %g wanted %g its %d\n", pass, left, wanted, solver_.iterations());
             if (pass > options_.most_passes || !std::isfinite(left)) give_up(pass, left / largest_left_);
-            add(solver_.solve(system_.residual, std::max(margin * wanted / left, forcing)));
+            add(correction(stage, std::max(margin * wanted / left, per_time > 0 ? forcing : steady_forcing)));
             ++passes_;
             assemble(stage, false);
             const double before = left;
             left = solver_.size(system_.residual);
             const double reduction = left / before;
-            if (left <= wanted || reduction * reduction * left <= wanted) continue;  // two more passes as this one
+            if (left <= wanted || reduction * reduction * left <= wanted)
+                continue;  // two more passes as this one
             if (left > stagnation * before && left <= rounding * solver_.size_of_terms(unknown())) break;
             assemble(stage, true);
             take_matrix(stage);
@@ -200,14 +208,16 @@ private:
 
     void assemble(const FlowStage& stage, bool derivative) {
         heed(ranks_);
-        assemble_blocks(current_, blocks_,
-                        [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
-                        system_, ranks_.watch);
+        assemble_blocks(
+            current_, blocks_,
+            [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
+            system_, ranks_.watch);
         reaction_ = system_.residual;
         if (conditions_.closed) spread_net_flux();
     }
 
-    /// What the given velocities let in more than out, as rounding and facets have it, is spread over the volume.
+    /// What the given velocities let in more than out, as rounding and facets have it, is spread over the
+    /// volume.
     void spread_net_flux() {
         double mine = 0, net = 0;
         for (std::size_t r = 0; r < rows().count(); ++r) mine += system_.residual[block_size * r + 3];
@@ -239,9 +249,22 @@ private:
     }
 
     void take_matrix(const FlowStage& stage) {
-        if (!is_viscous(stage)) return solver_.take(nullptr);
+        if (!triangular_) return solver_.take(nullptr);
         const PressureScales scales = pressure_scales(stage);
         solver_.take(&scales);
+    }
+
+    /// Where incomplete factors do not lead to it, the other preconditioner is tried.
+    [[nodiscard]] std::vector<double> correction(const FlowStage& stage, double tolerance) {
+        try {
+            return solver_.solve(system_.residual, tolerance);
+        } catch (const SolverError&) {
+            if (triangular_) throw;
+        }
+        triangular_ = true;
+        assemble(stage, true);
+        take_matrix(stage);
+        return solver_.solve(system_.residual, tolerance);
     }
 
     /// block_size per global row.
@@ -255,40 +278,46 @@ private:
         return all;
     }
 
-    /// Does momentum pass several cells in the stage, by viscosity, somewhere?
+    /// Is the system a large one of viscosity alone, in next to all cells?
     [[nodiscard]] bool is_viscous(const FlowStage& stage) const {
-        if (stage.per_time == 0) return true;
-        double most = 0;
+        if (numbering().rows() < many_vertices) return false;
+        std::array<double, 2> mine = {0, 0}, all = {0, 0};  // cells, and those where viscosity rules
         for_each_cell(blocks_.pattern.cells, [&](const auto& cell) {
             const FlowMaterial& material = material_[cell_region(current_, cell)];
-            if (!material.densities.empty() || !material.viscosities.empty()) return;
-            const auto points = cell_points(corners(stage.position, current_, cell));
-            double squares = 0;
-            for (const auto& point : points)
-                for (const Vec3& g : point.volume_gradient) squares = std::max(squares, squared_norm(g / point.volume));
-            most = std::max(most, material.viscosity / material.density * squares / stage.per_time);
+            const auto vertices = cell_vertices(current_, cell);
+            const double kinematic = mean_of(material.viscosity, material.viscosities, vertices) /
+                                     mean_of(material.density, material.densities, vertices);
+            const double length =
+                std::cbrt(total_volume(cell_points(corners(stage.position, current_, cell))));
+            mine[0] += 1;
+            if (kinematic / (length * length) > viscous_share * (stage.per_time + crossing_rate(stage, cell)))
+                mine[1] += 1;
         });
-        double all = 0;
-        MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, ranks_.communicator);
-        return all > viscous_share;
+        MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
+        return all[1] > next_to_all * all[0];
     }
 
     [[nodiscard]] PressureScales pressure_scales(const FlowStage& stage) const {
         CellSystems systems;
-        ask_cells(blocks_.pattern.cells, [&](const auto& cell) {
-            const FlowMaterial& material = material_[cell_region(current_, cell)];
-            const auto vertices = cell_vertices(current_, cell);
-            const double density = mean_of(material.density, material.densities, vertices),
-                         viscosity = mean_of(material.viscosity, material.viscosities, vertices);
-            const double laplacian = stage.per_time > 0 ? 1 / (density * stage.per_time) : 0;
-            return pressure_cell(cell_points(corners(stage.position, current_, cell)), laplacian, 1 / viscosity);
-        }, [](const auto&) { return true; }, systems, ranks_.watch);
+        ask_cells(
+            blocks_.pattern.cells,
+            [&](const auto& cell) {
+                const FlowMaterial& material = material_[cell_region(current_, cell)];
+                const auto vertices = cell_vertices(current_, cell);
+                const double density = mean_of(material.density, material.densities, vertices),
+                             viscosity = mean_of(material.viscosity, material.viscosities, vertices);
+                const double laplacian = stage.per_time > 0 ? 1 / (density * stage.per_time) : 0;
+                return pressure_cell(cell_points(corners(stage.position, current_, cell)), laplacian,
+                                     1 / viscosity);
+            },
+            [](const auto&) { return true; }, systems, ranks_.watch);
         LinearSystem sums(rows());
         add_cells(blocks_.pattern, systems, sums);
         return {std::move(sums.value), std::move(sums.held)};
     }
     template <std::size_t n>
-    static double mean_of(double value, const Array<Vertex, double>& values, const std::array<Vertex, n>& vertices) {
+    static double mean_of(double value, const Array<Vertex, double>& values,
+                          const std::array<Vertex, n>& vertices) {
         if (values.empty()) return value;
         double sum = 0;
         for (Vertex v : vertices) sum += values[v];
@@ -301,7 +330,8 @@ private:
         for (std::size_t r = 0; r < rows().count(); ++r)
             for (std::size_t m = 0; m < 3; ++m)
                 all[3 * (static_cast<std::size_t>(rows().first_row) + r) + m] = reaction_[block_size * r + m];
-        MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, ranks_.communicator);
+        MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM,
+                      ranks_.communicator);
         Array<Vertex, Vec3> reaction(current_.position.size());
         for (std::size_t r = 0; r < numbering().vertex.size(); ++r)
             reaction[numbering().vertex[r]] = {all[3 * r], all[3 * r + 1], all[3 * r + 2]};
@@ -335,6 +365,7 @@ private:
     Array<Vertex, double> share_of_volume_;
     Array<Vertex, Vec3> mesh_velocity_;
     FlowSolver solver_;
+    bool triangular_ = false;  // the preconditioner
     int passes_ = 0;
     double largest_left_ = 0;  // the first residual of a stage, the larger of both
     double error_ = 0;
@@ -345,7 +376,8 @@ private:
 FlowReport step_flow(const Ranks& ranks, const Mesh& before, const Mesh& current, const FlowOptions& options,
                      FlowState& state, double t, double dt, const Array<Vertex, double>& temperature) {
     check_flow(options, current);
-    if (!(dt > 0 && std::isfinite(dt))) throw CaseError(options.key + ": dt must be positive, got " + std::to_string(dt));
+    if (!(dt > 0 && std::isfinite(dt)))
+        throw CaseError(options.key + ": dt must be positive, got " + std::to_string(dt));
     FlowSolution solution(ranks, before, current, options, state, t, dt, temperature);
     solution.solve_all();
     FlowReport report = solution.report();

@@ -1,4 +1,5 @@
-// What the method has exactly: uniform flows and linear pressures, on meshes of tets and prisms that move anyhow.
+// What the method has exactly: uniform flows and linear pressures, on meshes of tets and prisms that move
+// anyhow.
 #include "flow_problems.h"
 #include "session.h"
 #include <kropla/base/error.h>
@@ -42,7 +43,8 @@ TEST(FlowExact, AUniformFlowIsKeptOnAnyMovingMesh) {
         Mesh before = place_at_step(start, 0);
         for (int step = 1; step <= 3; ++step) {
             const Mesh current = place_at_step(start, step);
-            const FlowReport report = step_flow(petsc().all_ranks(), before, current, options, state, 0.01 * step, 0.01);
+            const FlowReport report =
+                step_flow(petsc().all_ranks(), before, current, options, state, 0.01 * step, 0.01);
             EXPECT_LT(largest_difference(current, state, wind) / norm(wind), 1e-12) << "step " << step;
             EXPECT_LT(std::abs(report.net_flux), 1e-13 * norm(wind));
             EXPECT_NEAR(report.face_flux[1], 3, 1e-12);
@@ -82,7 +84,8 @@ TEST(FlowExact, HydrostaticPressureIsLinear) {
     const double shift = state.pressure[Vertex{0}] - exact(mesh.position[Vertex{0}]);
     EXPECT_LT(pressure_error(mesh, state, [&](const Vec3& x) { return exact(x) + shift; }) / top, 1e-9);
     ASSERT_EQ(report.bodies.size(), 1u);
-    const Vec3 buoyancy = -1000 * 0.35 * 0.35 * 0.35 * options.gravity;  // what the body displaces, after its layer
+    const Vec3 buoyancy =
+        -1000 * 0.35 * 0.35 * 0.35 * options.gravity;  // what the body displaces, after its layer
     EXPECT_LT(distance(report.bodies[0].force, buoyancy) / norm(buoyancy), 1e-8);
     EXPECT_LT(norm(report.bodies[0].torque) / norm(buoyancy), 1e-8);
 }
@@ -92,7 +95,9 @@ double pressure_error_of_frame(const FlowScheme scheme, int steps) {
     const Mesh start = cube_with_layers(4, true);
     const auto speed = [](double t) { return std::sin(3 * t) + t * t; };
     const auto rise = [](double t) { return 3 * std::cos(3 * t) + 2 * t; };
-    FlowOptions options = fluid(2, 0.1, velocity_of([&](const Vec3&, double t) { return Vec3{0, 0, speed(t)}; }));
+    FlowOptions options = fluid(2, 0.1, velocity_of([&](const Vec3&, double t) {
+                                    return Vec3{0, 0, speed(t)};
+                                }));
     options.regions.push_back(options.regions[0]);
     options.gravity = {0, 0, -9.81};
     options.scheme = scheme;

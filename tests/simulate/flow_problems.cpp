@@ -32,12 +32,33 @@ double root_mean_square(const Mesh& mesh, const std::function<double(Vertex)>& e
     return std::sqrt(sum / volume);
 }
 
+/// Blows the sphere up until the polyhedron has its volume; the layer keeps its shell.
+void give_volume(Mesh& mesh, double radius, double thick) {
+    double volume = 0;
+    for_each_share(mesh, living_cells(mesh, Region(1)),
+                   [&](const auto&, Vertex, double share) { volume += share; });
+    const double grown = std::cbrt(4 * std::numbers::pi / 3 * radius * radius * radius / volume);
+    Array<Vertex, char> of_body(mesh.position.size(), 0);
+    for_each_cell(living_cells(mesh, Region(1)), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) of_body[v] = 1;
+    });
+    for (Vertex v : mesh.position.indices()) {
+        const double r = norm(mesh.position[v]);
+        if (of_body[v]) mesh.position[v] = grown * mesh.position[v];
+        else if (r < thick)
+            mesh.position[v] =
+                (1 + (grown - 1) * radius / r * (thick - r) / (thick - radius)) * mesh.position[v];
+    }
+}
+
 }  // namespace
 
 VectorQuantity velocity_of(const std::function<Vec3(const Vec3& place, double t)>& velocity) {
     VectorQuantity parts;
     for (int m = 0; m < 3; ++m)
-        parts[static_cast<std::size_t>(m)] = [velocity, m](const Vec3& x, double t) { return velocity(x, t)[m]; };
+        parts[static_cast<std::size_t>(m)] = [velocity, m](const Vec3& x, double t) {
+            return velocity(x, t)[m];
+        };
     return parts;
 }
 
@@ -96,14 +117,17 @@ Mesh sphere_in_cube(const SphereInCube& shape) {
     const Mesh tets = cube_grid(2 * count, 2 * count, 2 * count, place, [&](int i, int j, int k) {
         return std::max({ring(i), ring(j), ring(k)}) <= body ? 1 : 0;
     });
-    return with_layer(tets, {}, surroundings, shape.prisms, shape.layer / thick);
+    Mesh mesh = with_layer(tets, {}, surroundings, shape.prisms, shape.layer / thick);
+    give_volume(mesh, shape.radius, thick);
+    return mesh;
 }
 
 Vec3 stokes_velocity(const Vec3& place, double radius, double speed) {
     const double r = norm(place), a = radius / r, cosine = place.z / r;
     const Vec3 out = place / r;
     const double radial = speed * cosine * (1 - 1.5 * a + 0.5 * a * a * a);
-    const double tangential = -speed * (1 - 0.75 * a - 0.25 * a * a * a);  // times the sine, towards rising angles
+    const double tangential =
+        -speed * (1 - 0.75 * a - 0.25 * a * a * a);  // times the sine, towards rising angles
     return radial * out + tangential * (cosine * out - Vec3{0, 0, 1});
 }
 
@@ -111,11 +135,14 @@ double stokes_pressure(const Vec3& place, double radius, double speed) {
     return -1.5 * speed * radius * place.z / std::pow(norm(place), 3);
 }
 
-double velocity_error(const Mesh& mesh, const FlowState& state, const std::function<Vec3(const Vec3&)>& exact) {
-    return root_mean_square(mesh, [&](Vertex v) { return distance(state.velocity[v], exact(mesh.position[v])); });
+double velocity_error(const Mesh& mesh, const FlowState& state,
+                      const std::function<Vec3(const Vec3&)>& exact) {
+    return root_mean_square(mesh,
+                            [&](Vertex v) { return distance(state.velocity[v], exact(mesh.position[v])); });
 }
 
-double pressure_error(const Mesh& mesh, const FlowState& state, const std::function<double(const Vec3&)>& exact) {
+double pressure_error(const Mesh& mesh, const FlowState& state,
+                      const std::function<double(const Vec3&)>& exact) {
     return root_mean_square(mesh, [&](Vertex v) { return state.pressure[v] - exact(mesh.position[v]); });
 }
 
