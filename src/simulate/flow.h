@@ -68,8 +68,8 @@ enum class FlowScheme {
 struct FlowOptions {
     // Of region 0, 1, ...: a liquid or gas, or nothing: a solid body.
     std::vector<std::optional<FlowRegion>> regions;
-    // Velocities of regions 1, 2, ...; of those that are empty, or not there: the mesh's, (x1 - x0) / dt, which
-    // is of first order in time where a body accelerates.
+    // Velocities of regions 1, 2, ...; of those that are empty, or not there: the mesh's, (x1 - x0) / dt, of
+    // first order in time where a body accelerates.
     std::vector<std::function<RigidVelocity(double t)>> bodies = {};
     Vec3 gravity = {};                     // [m/s^2]
     bool convection = true;                // false: Stokes

@@ -35,6 +35,11 @@ namespace {
 
 constexpr double of_inverse_estimate = 9;  // [-] C: on a line tau_M is h^2 / (12 nu) [Franca, Frey 1992]
 
+// [-] of tau_M, what the rate alone would make it: from here on the weight of SUPG is differentiated too. Far
+//   from the
+// solution, where steps are large, Newton's method does not find it so.
+constexpr double rate_rules = 0.7;
+
 using Matrix3 = std::array<Vec3, 3>;  // by rows
 
 template <std::size_t n>
@@ -208,13 +213,14 @@ void put(const Four& column, double* to) {
 
 Four four(const Vec3& a, double last) { return Four(Four::Register{a.x, a.y, a.z, last}); }
 
-/// The derivative, column by column of each block, three of momentum and one of volume at once. tau and the
-/// weight of SUPG are taken as they are.
+/// The derivative, column by column of each block, three of momentum and one of volume at once. tau is taken
+/// as it is, and so is the weight of SUPG in large steps.
 template <bool add, std::size_t n>
 void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<n>& blocks) {
     const double density = cell.density, volume = at.volume, tau = at.tau.momentum;
     const double newton = cell.convection ? volume * density : 0;
     const std::array<Four, 3> unit = {four({1, 0, 0}, 0), four({0, 1, 0}, 0), four({0, 0, 1}, 0)};
+    const bool turns = cell.convection && 2 * cell.per_time * density * tau > rate_rules;
     std::array<Four, 3> du;  // by columns
     for (int c = 0; c < 3; ++c)
         du[static_cast<std::size_t>(c)] = four({at.du[0][c], at.du[1][c], at.du[2][c]}, 0);
@@ -230,8 +236,7 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
         const Vec3 viscous = volume * cell.viscosity * gi, steered = volume * tau * gi;
         const Four compressed = four(volume * at.tau.volume * gi, volume * at.means.value[i]);
         const Vec3 turned = newton * tau * (gi.x * at.du[0] + gi.y * at.du[1] + gi.z * at.du[2]);
-        const Four turning =
-            cell.convection ? volume * tau * density * four(at.residual, 0) : Four(0);  // of the weight
+        const Four turning = turns ? volume * tau * density * four(at.residual, 0) : Four(0);
         const Four pushed = four(-volume * gi, 0), along = volume * weight * four({1, 1, 1}, 0);
         for (std::size_t j = 0; j < n; ++j) {
             const Vec3& gj = at.gradient[j];

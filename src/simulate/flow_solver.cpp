@@ -133,8 +133,8 @@ class Triangular {
 public:
     Triangular(const Ranks& ranks, const BlockPattern& blocks, std::span<const double> value,
                const PressureScales& scales, const std::vector<double>& scale,
-               const std::vector<double>& own_scale, bool closed)
-        : ranks_(ranks), rows_(blocks.pattern.rows), value_(value), closed_(closed) {
+               const std::vector<double>& own_scale)
+        : ranks_(ranks), rows_(blocks.pattern.rows), value_(value) {
         std::vector<double> values(rows_.column.size());
         for (std::size_t m = 0; m < 3; ++m) {
             for (std::size_t k = 0; k < values.size(); ++k) values[k] = value[block_entries * k + 5 * m];
@@ -199,7 +199,6 @@ private:
     const Ranks& ranks_;
     const SparseRows& rows_;
     std::span<const double> value_;
-    bool closed_;
     std::array<std::optional<Cycle>, 3> velocity_;
     std::optional<Cycle> laplacian_;
     std::vector<double> lumped_;
@@ -388,8 +387,7 @@ void FlowSolver::take(const PressureScales* scales) {
     p.tell_of_new_values();
     if (p.unknowns.closed) p.leave_constants_out();
     if (scales != nullptr)
-        p.triangular = std::make_unique<Triangular>(p.ranks, p.blocks, p.value, *scales, p.scale, p.own_scale,
-                                                    p.unknowns.closed);
+        p.triangular = std::make_unique<Triangular>(p.ranks, p.blocks, p.value, *scales, p.scale, p.own_scale);
     p.make_solver();
 }
 

@@ -19,7 +19,7 @@ namespace kropla {
 namespace {
 
 constexpr double gamma = 1 - 1 / std::numbers::sqrt2;
-constexpr double margin = 0.3;       // [-] of what is wanted of the residual: how well systems are solved, and
+constexpr double margin = 0.3;       // [-] of what is wanted of the residual: systems are solved so well, and
 constexpr double forcing = 1e-4;     // [-] of the residual, at the best: a step's first guess is near; and
 constexpr double steady_forcing = 1e-2;  // [-] of that towards a steady state, which is far
 constexpr double stagnation = 0.5;   // [-] of the residual: a pass that leaves more got nowhere, and

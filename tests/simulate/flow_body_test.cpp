@@ -45,7 +45,7 @@ TEST(FlowBody, DragOfASphereAsStokesHasIt) {
                  b = steady(sphere_mesh(2), options).bodies[0].force.z / drag - 1;
     RecordProperty("errors", std::to_string(a) + " " + std::to_string(b));
     EXPECT_GT(std::log2(a / b), 1.9);
-    EXPECT_LT(std::abs(b), 0.0235);  // 768 triangles on the sphere
+    EXPECT_LT(std::abs(b), 0.0232);  // 768 triangles on the sphere
 }
 
 // K = 1.601688 for a radius of 0.2 half-widths: a method of fundamental solutions, see the handbook's section
@@ -69,7 +69,7 @@ TEST(FlowBody, TorqueOnASphereThatSpins) {
     const FlowReport report = steady(sphere_mesh(1), options);
     const double size = 8 * pi * std::pow(radius, 3) * norm(spin);
     RecordProperty("torque", std::to_string(norm(report.bodies[0].torque) / size));
-    EXPECT_LT(norm(report.bodies[0].torque + 8 * pi * std::pow(radius, 3) * spin) / size, 0.1);
+    EXPECT_LT(norm(report.bodies[0].torque + 8 * pi * std::pow(radius, 3) * spin) / size, 0.077);
     EXPECT_LT(norm(report.bodies[0].force) * radius / size, 1e-4);
     EXPECT_LT(std::abs(report.net_flux), 1e-14);
 }

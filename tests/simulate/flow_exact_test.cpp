@@ -79,8 +79,6 @@ TEST(FlowExact, HydrostaticPressureIsLinear) {
     const double top = 1000 * norm(options.gravity);
     const auto exact = [&](const Vec3& x) { return 1000 * dot(options.gravity, x - Vec3{0.5, 0.5, 0.5}); };
     EXPECT_LT(largest_difference(mesh, state, {}), 1e-9);
-    double mean = 0;
-    for (Vertex v : vertices_of(mesh, surroundings).indices()) mean = std::max(mean, state.velocity[v].x);
     const double shift = state.pressure[Vertex{0}] - exact(mesh.position[Vertex{0}]);
     EXPECT_LT(pressure_error(mesh, state, [&](const Vec3& x) { return exact(x) + shift; }) / top, 1e-9);
     ASSERT_EQ(report.bodies.size(), 1u);
@@ -117,7 +115,7 @@ TEST(FlowExact, AnAcceleratingFrameHasALinearPressure) {
     const double a = pressure_error_of_frame(FlowScheme::second_order, 10),
                  b = pressure_error_of_frame(FlowScheme::second_order, 20);
     RecordProperty("errors", std::to_string(a) + " " + std::to_string(b));
-    EXPECT_LT(a, 0.1);
+    EXPECT_LT(a, 0.0147);
     EXPECT_GT(a / b, 3.5);
 }
 
