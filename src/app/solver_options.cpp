@@ -2,6 +2,7 @@
 
 #include "app/case_table.h"
 #include <kropla/base/error.h>
+#include "simulate/flow_solver.h"
 #include "simulate/solver.h"
 
 #include <fmt/format.h>
@@ -49,7 +50,7 @@ bool asked_at_the_end(const std::string& name) {
     return std::ranges::find(last, name) != last.end();
 }
 
-/// What is often wanted, to find what was meant; all may follow "potential_".
+/// What is often wanted, to find what was meant; all may follow "potential_" and "flow_".
 const std::vector<std::string>& well_known() {
     static const std::vector<std::string> names = {
         "ksp_type", "ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_max_it", "ksp_monitor", "ksp_view",
@@ -66,15 +67,17 @@ const std::vector<std::string>& well_known() {
 }
 
 std::string meant(const std::string& name) {
-    constexpr std::string_view potential = "-potential_";
+    constexpr std::array<std::string_view, 2> prefixes = {"-potential_", "-flow_"};
     if (name.find("out") == 1 || name.find("res") == 1 || name.find("thr") == 1)
         return fmt::format("; did you mean \"-{}\"?", name);
-    const bool of_potential = name.starts_with(potential);
-    const std::string word = name.substr(of_potential ? potential.size() : 1);
+    const auto* const known_prefix =
+        std::ranges::find_if(prefixes, [&](std::string_view prefix) { return name.starts_with(prefix); });
+    const std::string_view prefix = known_prefix == prefixes.end() ? "-" : *known_prefix;
+    const std::string word = name.substr(prefix.size());
     const auto far = [&](const std::string& known) { return edit_distance(word, known); };
     const std::string& nearest = *std::ranges::min_element(well_known(), {}, far);
     if (far(nearest) > std::max(1, static_cast<int>(word.size()) / 3)) return "";
-    return fmt::format("; did you mean \"{}{}\"?", of_potential ? potential : "-", nearest);
+    return fmt::format("; did you mean \"{}{}\"?", prefix, nearest);
 }
 
 bool used(const SolverOption& option) {  // PETSc lists them without the dash
@@ -103,6 +106,7 @@ void check_solver_options(const std::vector<std::string>& words) {
     if (options.empty()) return;
     try {
         rehearse({PETSC_COMM_SELF, 0, 1});
+        rehearse_flow({PETSC_COMM_SELF, 0, 1});
     } catch (const SolverError& error) {
         refuse_value(options, error.what());
     }

@@ -452,4 +452,22 @@ std::vector<double> FlowSolver::solve(const std::vector<double>& residual, doubl
     return gather_rows(p.ranks, p.blocks.pattern.numbering, block_size, found);
 }
 
+void rehearse_flow(const Ranks& ranks) {
+    BlockPattern blocks;
+    blocks.pattern.rows = chain();
+    const SparseRows& rows = blocks.pattern.rows;
+    const PressureScales scales{std::vector<double>(rows.column.size(), 1.0), std::vector<double>(rows.count(), 1.0)};
+    for (const PressureScales* chosen : {static_cast<const PressureScales*>(nullptr), &scales}) {
+        FlowSolver solver(ranks, blocks, {std::vector<char>(block_size * rows.count(), 0), false});
+        const std::span<double> values = solver.values();
+        for (std::size_t r = 0; r < rows.count(); ++r)
+            for (auto k = static_cast<std::size_t>(rows.begin[r]); k < static_cast<std::size_t>(rows.begin[r + 1]); ++k)
+                for (std::size_t i = 0; i < block_size; ++i)
+                    values[block_entries * k + (block_size + 1) * i] =
+                        rows.column[k] == static_cast<PetscInt>(r) ? 2.1 : -1.0;
+        solver.take(chosen);
+        (void)solver.solve(std::vector<double>(block_size * rows.count(), 1.0), 0.5);
+    }
+}
+
 }  // namespace kropla

@@ -54,4 +54,7 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
+/// Sets up each solver that a flow may choose, for a small system, as `rehearse` (solver.h).
+void rehearse_flow(const Ranks& this_rank);
+
 }  // namespace kropla

@@ -5,6 +5,17 @@
 
 namespace kropla {
 
+SparseRows chain() {
+    constexpr PetscInt count = 512;
+    SparseRows rows;
+    for (PetscInt r = 0; r < count; ++r) {
+        for (PetscInt c = std::max<PetscInt>(r - 1, 0); c <= std::min<PetscInt>(r + 1, count - 1); ++c)
+            rows.column.push_back(c);
+        rows.begin.push_back(static_cast<PetscInt>(rows.column.size()));
+    }
+    return rows;
+}
+
 LinearSystem::LinearSystem(const SparseRows& sparse_rows) : rows(sparse_rows) {
     clear();
 }

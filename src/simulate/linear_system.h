@@ -17,6 +17,9 @@ struct SparseRows {
     [[nodiscard]] std::size_t count() const { return begin.size() - 1; }
 };
 
+/// A chain of unknowns, each bound to the one before and the one after: enough for two levels of any multigrid.
+[[nodiscard]] SparseRows chain();
+
 /// The rows of a linear system A x = b that one rank owns. Of the matrix there are its sums by row and its
 /// entries off the diagonal, and what it does to x is meant as
 ///     (A x)_i = row_sum_i x_i + sum over j of a_ij (x_j - x_i),

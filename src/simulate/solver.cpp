@@ -380,18 +380,6 @@ std::vector<double> everywhere(const Ranks& ranks, const std::vector<double>& mi
     return Gathering(vector.get())(vector.get());
 }
 
-/// Chains of unknowns, each bound to the one before and the one after: enough for two levels of any multigrid.
-SparseRows chain() {
-    constexpr PetscInt count = 512;
-    SparseRows rows;
-    for (PetscInt r = 0; r < count; ++r) {
-        for (PetscInt c = std::max<PetscInt>(r - 1, 0); c <= std::min<PetscInt>(r + 1, count - 1); ++c)
-            rows.column.push_back(c);
-        rows.begin.push_back(static_cast<PetscInt>(rows.column.size()));
-    }
-    return rows;
-}
-
 }  // namespace
 
 Solver::Solver(const Ranks& ranks, const SparseRows& rows) : ranks_(ranks), rows_(rows) {}
