@@ -1,7 +1,7 @@
 #include "report/flow_cuts.h"
 
-#include <kropla/mesh/prisms.h>
 #include "report/hydrostatic.h"
+#include "report/solids.h"
 #include "report/units.h"
 
 #include <algorithm>
@@ -29,31 +29,8 @@ bool flows(const CutFrame& f) {
            std::ranges::any_of(*velocity, [](const Vec3& u) { return squared_norm(u) > 0; });
 }
 
-/// By the number of a region: is it a solid body, as there is no pressure within?
-std::vector<bool> solid_regions(const CutFrame& f) {
-    const Mesh& mesh = f.frame.mesh;
-    constexpr int none = -1, several = -2;
-    Array<Vertex, int> region_at(mesh.position.size(), none);
-    int most = 0;
-    const auto note = [&](Vertex v, Region region) {
-        int& at = region_at[v];
-        at = at == none || at == region.value ? region.value : several;
-        most = std::max(most, region.value);
-    };
-    for (const Tet t : mesh.tets.indices())
-        for (std::size_t corner = 0; corner < 4 && alive(mesh, t); ++corner) note(mesh.tets[t][corner], mesh.region[t]);
-    for (const Prism& prism : all_prisms(mesh))
-        for (const Vertex v : prism_vertices(mesh, prism)) note(v, layer_of(mesh, prism.layer).region);
-    std::vector<bool> solid(static_cast<std::size_t>(most) + 1, true);
-    solid[0] = false;
-    const Array<Vertex, double>& pressure = field_named(f, pressure_name)->values;
-    for (const Vertex v : region_at.indices())
-        if (region_at[v] > 0 && pressure[v] != 0) solid[static_cast<std::size_t>(region_at[v])] = false;
-    return solid;
-}
-
 Parted parted(const CutFrame& f) {
-    const std::vector<bool> solid = solid_regions(f);
+    const std::vector<bool> solid = solid_regions(f.frame.mesh, field_named(f, pressure_name)->values);
     Parted parts;
     for (const CutPolygon& polygon : f.cut)
         (solid[static_cast<std::size_t>(polygon.region.value)] ? parts.solid : parts.flowing).push_back(polygon);
@@ -122,11 +99,7 @@ std::string pressure_rows(const RunFiles& run, std::span<const CutFrame> frames,
     });
     const std::string unit = "[" + scale(pressure, "Pa") + "]";
     const std::string title = (is_there(at_rest) ? "pressure less that at rest " : "pressure ") + unit;
-    const double least = pressure.least, most = pressure.most, size = std::max(std::abs(least), std::abs(most));
-    const auto colour = [=](double fraction) {  // white where it is zero, and as strong to both sides
-        return blue_to_red(0.5 + 0.5 * (least + fraction * (most - least)) / size);
-    };
-    const ColourScale colours = {least, most, colour};
+    const ColourScale colours = signed_scale(pressure.least, pressure.most);
     const auto draw = [&](const CutFrame& f, const CutWindow& window) {
         heed(watch);
         const auto i = static_cast<std::size_t>(&f - frames.data());

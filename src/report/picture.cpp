@@ -148,6 +148,13 @@ void add_arrow(const Drawing& drawing, const Arrow& arrow, std::string& shafts, 
 
 }  // namespace
 
+ColourScale signed_scale(double least, double most) {
+    const double size = std::max(std::abs(least), std::abs(most));
+    return {least, most, [=](double fraction) {
+                return blue_to_red(0.5 + 0.5 * (least + fraction * (most - least)) / size);
+            }};
+}
+
 CutWindow extent(std::span<const CutPolygon> cut) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     CutWindow window = {{infinity, infinity}, {-infinity, -infinity}};

@@ -36,6 +36,9 @@ struct ColourScale {
     std::function<std::string(double fraction)> colour = inferno;
 };
 
+/// White where values are zero, blue below and red above, as strong to both sides.
+[[nodiscard]] ColourScale signed_scale(double least, double most);
+
 /// A field on a cut as inline SVG, in bands of one colour each: exact level lines.
 [[nodiscard]] std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,
                                      const ColourScale& scale, const CutWindow& window);
