@@ -30,7 +30,8 @@ namespace kropla::pictures {
 namespace {
 
 constexpr const char* shown = "shown";
-constexpr double arrows_across = 18;  // a box
+constexpr double arrows_across = 15;  // a box
+constexpr double least_arrow = 0.2;   // of the largest: shorter ones are but dots
 
 /// A frame of a flow, cut through the first body.
 struct FlowFrame {
@@ -109,7 +110,7 @@ std::vector<Arrow> arrows_of(const FlowFrame& f, const CutPlane& plane, double m
         (f.solid[static_cast<std::size_t>(polygon.region.value)] ? bodies : flowing).push_back(polygon);
     const double spacing = (f.run.max.x - f.run.min.x) / arrows_across;
     std::vector<Arrow> all = arrows(flowing, bodies, plane, velocity_of(f), {.spacing = spacing, .most = most});
-    std::erase_if(all, [&](const Arrow& arrow) { return arrow.length < 0.15 * spacing; });
+    std::erase_if(all, [&](const Arrow& arrow) { return arrow.length < least_arrow * spacing; });
     return all;
 }
 
