@@ -1,5 +1,7 @@
 #include "app/progress.h"
 
+#include "report/units.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,14 +63,25 @@ std::string spoken_count(double count) {
     return text;
 }
 
+std::string plain(std::string text) {
+    for (const std::string_view micro = "µ"; text.find(micro) != std::string::npos;)
+        text.replace(text.find(micro), micro.size(), "u");
+    return text;
+}
+
+std::string spoken_quantity(double value, const char* si) { return plain(with_unit(value, si, 3)); }
+
 std::string progress_line(const ProgressRow& row) {
     const std::string steps = fmt::format("{}", row.steps);
-    const std::string heat = row.heat_seconds ? fmt::format("  heat {:5.2f} s", *row.heat_seconds) : "";
+    const auto seconds = [](const char* what, const std::optional<double>& spent) {
+        return spent ? fmt::format("  {} {:5.2f} s", what, *spent) : "";
+    };
+    const std::string simulation = seconds("heat", row.heat_seconds) + seconds("flow", row.flow_seconds);
     return fmt::format(
         "step {:>{}}/{}  t {:>7}  worst R/r {:4.1f}  {:<8}  touched {:4.1f} %  mesh {:5.2f} s{}{}  left {}",
         row.step, steps.size(), steps, spoken_time(row.time), row.worst_aspect_ratio, row.rung,
-        100 * row.touched_fraction, row.mesh_seconds, heat,
-        row.temperatures.empty() ? "" : "  " + row.temperatures, clock_time(row.seconds_left));
+        100 * row.touched_fraction, row.mesh_seconds, simulation,
+        row.bodies.empty() ? "" : "  " + row.bodies, clock_time(row.seconds_left));
 }
 
 Progress::Progress(std::FILE* out) : out_(out), terminal_(columns(out) > 0) {}

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 namespace kropla {
 namespace {
@@ -39,15 +38,6 @@ std::string spoken_temperature(double kelvin, int decimals) {
     return spoken_count(std::stod(text.substr(0, point))) + text.substr(point) + " K";
 }
 
-/// As the page has it, in letters that any terminal knows.
-std::string plain(std::string text) {
-    for (const std::string_view micro = "µ"; text.find(micro) != std::string::npos;)
-        text.replace(text.find(micro), micro.size(), "u");
-    return text;
-}
-
-std::string spoken(double value, const char* unit) { return plain(with_unit(value, unit, 3)); }
-
 /// How warm a body has become, and what it gave off.
 std::string heat_of(const BodyResult& body, const RunResults& results) {
     const double before = *body.start_mean, after = body.mean.back();
@@ -57,19 +47,23 @@ std::string heat_of(const BodyResult& body, const RunResults& results) {
     if (results.energy && is_rounding(body.given_off, results.energy->size)) return text;
     const bool conducts_only = !results.energy || is_rounding(results.energy->surfaces, results.energy->size);
     return text + fmt::format(", {} {}{}", body.given_off > 0 ? "gave off" : "took up",
-                              spoken(std::abs(body.given_off), "J"), conducts_only ? "" : " by conduction");
+                              spoken_quantity(std::abs(body.given_off), "J"), conducts_only ? "" : " by conduction");
 }
 
 std::string body_line(const BodyResult& body, const RunResults& results) {
     const std::string heat = body.mean.empty() ? "" : heat_of(body, results) + ", ";
-    return fmt::format("{}: {}{} {}", body.name, heat, moves(body) ? "now at" : "at rest at",
-                       plain(place_with_unit(body.place.back(), length_scale(body))));
+    const bool goes = moves(body);
+    const bool in_a_flow = !body.force.empty();
+    const std::string speed =
+        goes && in_a_flow ? ", going at " + spoken_quantity(norm(body.velocity.back()), "m/s") : "";
+    return fmt::format("{}: {}{} {}{}", body.name, heat, goes ? "now at" : "at rest at",
+                       plain(place_with_unit(body.place.back(), length_scale(body))), speed);
 }
 
 /// ", 1.3 J in through faces"; nothing if it is none.
 std::string brought(double joules, const char* how, const EnergyBalance& energy) {
     if (is_rounding(joules, energy.size)) return "";
-    return fmt::format(", {} {} {}", spoken(std::abs(joules), "J"), joules > 0 ? "in" : "out", how);
+    return fmt::format(", {} {} {}", spoken_quantity(std::abs(joules), "J"), joules > 0 ? "in" : "out", how);
 }
 
 std::string energy_line(const EnergyBalance& energy) {
@@ -78,7 +72,7 @@ std::string energy_line(const EnergyBalance& energy) {
         brought(energy.surfaces, "at surfaces of bodies", energy) + brought(energy.held, "by what is held", energy);
     const double error = std::abs(energy.relative_error());
     const std::string to = error > 0 ? fmt::format("to {:.0e}", error) : "to the last digit";
-    return fmt::format("energy: {} stored{}, {} {}", spoken(energy.end, "J"), flows,
+    return fmt::format("energy: {} stored{}, {} {}", spoken_quantity(energy.end, "J"), flows,
                        flows.empty() ? "kept" : "balanced", to);
 }
 

@@ -9,6 +9,7 @@
 #include <kropla/base/error.h>
 #include "io/file.h"
 #include <kropla/io/vtk.h>
+#include "report/results.h"
 
 #include <fmt/format.h>
 
@@ -18,13 +19,26 @@
 namespace kropla {
 namespace {
 
-/// The mean temperature of each body; of many, of the first two.
+constexpr std::size_t most_bodies = 2;  // of which the progress line speaks: the first
+
+/// The mean temperature of each body.
 std::string temperatures(const StepReport& report, const Case& it) {
-    constexpr std::size_t most = 2;
     std::string text;
-    for (std::size_t body = 0; body < std::min(most, report.bodies.size()); ++body)
+    for (std::size_t body = 0; body < std::min(most_bodies, report.bodies.size()); ++body)
         text += fmt::format("{}{} {} K", body == 0 ? "" : ", ", it.domain.bodies[body].name,
                             spoken_count(std::round(report.bodies[body].mean)));
+    return text;
+}
+
+/// The speed of each body that moves, as a mean over the step.
+std::string speeds(const StepReport& report, const Case& it) {
+    std::string text;
+    for (std::size_t body = 0; body < std::min(most_bodies, report.velocities.size()); ++body) {
+        const double speed = norm(report.velocities[body]);
+        if (is_rounding(speed * report.mesh.dt, norm(it.domain.box.max - it.domain.box.min))) continue;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", it.domain.bodies[body].name,
+                            spoken_quantity(speed, "m/s"));
+    }
     return text;
 }
 
@@ -125,7 +139,8 @@ void RunOutput::show_progress(std::int64_t step, const StepReport& report, doubl
     row.touched_fraction = report.mesh.touched_fraction;
     row.mesh_seconds = report.mesh.mesh_seconds;
     if (it_.heat) row.heat_seconds = report.mesh.solve_seconds;
-    if (it_.heat) row.temperatures = temperatures(report, it_);
+    if (it_.flow && !it_.heat) row.flow_seconds = report.mesh.solve_seconds;
+    row.bodies = it_.heat ? temperatures(report, it_) : it_.flow ? speeds(report, it_) : "";
     row.seconds_left = seconds_left;
     progress_.show(row);
 }

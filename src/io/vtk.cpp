@@ -350,19 +350,28 @@ void read_cells(const std::filesystem::path& path, vtkUnstructuredGrid& grid, Fi
     if (cells.tets.empty()) fail(path, "has no tets");
 }
 
-std::vector<NodalField> read_fields(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
-    std::vector<NodalField> fields;
+void take(vtkDataArray* array, Vertex v, double& value) { value = array->GetComponent(v.value, 0); }
+void take(vtkDataArray* array, Vertex v, Vec3& value) {
+    for (int axis = 0; axis < 3; ++axis) value[axis] = array->GetComponent(v.value, axis);
+}
+
+/// The point arrays of one component, or of three.
+template <class Field>
+std::vector<Field> read_fields(const std::filesystem::path& path, vtkUnstructuredGrid& grid) {
+    constexpr int components = std::is_same_v<Field, NodalVectorField> ? 3 : 1;
+    std::vector<Field> fields;
     for (int i = 0; i < grid.GetPointData()->GetNumberOfArrays(); ++i) {
         vtkDataArray* array = grid.GetPointData()->GetArray(i);
-        if (array == nullptr || array->GetName() == nullptr || array->GetNumberOfComponents() != 1) continue;
+        if (array == nullptr || array->GetName() == nullptr || array->GetNumberOfComponents() != components)
+            continue;
         if (array->GetNumberOfTuples() != grid.GetNumberOfPoints())
             fail(path, std::string("the point array ") + array->GetName() + " has not one value per vertex");
-        NodalField& field = fields.emplace_back();
+        Field& field = fields.emplace_back();
         field.name = array->GetName();
         if (array->HasInformation() && array->GetInformation()->Has(vtkDataArray::UNITS_LABEL()))
             field.unit = array->GetInformation()->Get(vtkDataArray::UNITS_LABEL());
         field.values.resize(static_cast<std::size_t>(grid.GetNumberOfPoints()));
-        for (const Vertex v : field.values.indices()) field.values[v] = array->GetComponent(v.value, 0);
+        for (const Vertex v : field.values.indices()) take(array, v, field.values[v]);
     }
     return fields;
 }
@@ -439,7 +448,8 @@ FileCells read_heeding(const std::filesystem::path& path, const Watch* watch) {
     FileCells cells;
     cells.position = read_positions(path, *grid);
     read_cells(path, *grid, cells);
-    cells.fields = read_fields(path, *grid);
+    cells.fields = read_fields<NodalField>(path, *grid);
+    cells.vectors = read_fields<NodalVectorField>(path, *grid);
     heed(watch);
     return cells;
 }
@@ -456,7 +466,7 @@ Frame make_frame(FileCells cells) {
             throw FileError(error.what());
         }
     };
-    Frame frame = {mesh(), std::move(cells.fields)};
+    Frame frame = {mesh(), std::move(cells.fields), std::move(cells.vectors)};
     const BoundingBox box = bounding_box(frame.mesh);
     for (const Tet t : frame.mesh.tets.indices())
         for (int corner = 0; corner < 4; ++corner) {

@@ -30,6 +30,7 @@ struct FileCells {
     Array<Tet, Region> region;               // 0 where the file has no cell array "region"
     std::vector<LoosePrism> prisms;          // vertices exist
     std::vector<NodalField> fields;          // point arrays of one component
+    std::vector<NodalVectorField> vectors = {};  // of three
     std::size_t passed_over = 0;             // cells of surfaces, lines and points, as mesh generators add them
 };
 
@@ -41,6 +42,7 @@ struct FileCells {
 struct Frame {
     Mesh mesh;
     std::vector<NodalField> fields;
+    std::vector<NodalVectorField> vectors = {};
 };
 
 /// The mesh of these cells. A VTU file does not know patches: boundary facets get that of the face of the

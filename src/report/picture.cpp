@@ -1,7 +1,6 @@
 #include "report/picture.h"
 
 #include "io/xml.h"
-#include "report/svg.h"
 
 #include <algorithm>
 #include <array>
@@ -33,6 +32,12 @@ Point2 on_drawing(const Drawing& drawing, Point2 p) {
     return {(p.x - drawing.window.min.x) * drawing.scale, (drawing.window.max.y - p.y) * drawing.scale};
 }
 
+std::vector<Point2> on_drawing(const Drawing& drawing, const CutPolygon& polygon) {
+    std::vector<Point2> places;
+    for (const CutCorner& corner : corners(polygon)) places.push_back(on_drawing(drawing, corner.place));
+    return places;
+}
+
 /// Whether anything of it may lie in the window.
 bool seen(const CutPolygon& polygon, const CutWindow& window) {
     const auto all = [&](auto outside) {
@@ -42,6 +47,10 @@ bool seen(const CutPolygon& polygon, const CutWindow& window) {
            !all([&](Point2 p) { return p.x > window.max.x; }) &&
            !all([&](Point2 p) { return p.y < window.min.y; }) &&
            !all([&](Point2 p) { return p.y > window.max.y; });
+}
+
+bool is_within(const CutWindow& window, Point2 p) {
+    return p.x >= window.min.x && p.x <= window.max.x && p.y >= window.min.y && p.y <= window.max.y;
 }
 
 std::string opening(const Drawing& drawing, const char* kind) {
@@ -84,7 +93,7 @@ int band_of(double value, double least, double most) {
     return std::clamp(static_cast<int>(std::floor((value - least) / (most - least) * bands)), 0, bands - 1);
 }
 
-std::string band_colour(int band) { return inferno((band + 0.5) / bands); }
+std::string band_colour(const ColourScale& scale, int band) { return scale.colour((band + 0.5) / bands); }
 
 /// Adds the polygon, divided at the levels between bands, to the paths of the bands.
 void add_in_bands(const std::vector<ValuedPoint>& polygon, double least, double most,
@@ -102,7 +111,49 @@ void add_in_bands(const std::vector<ValuedPoint>& polygon, double least, double 
     }
 }
 
+/// The bands of a field, a path each.
+std::string field_paths(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, const ColourScale& scale,
+                        const Drawing& drawing) {
+    std::array<std::string, bands> paths;
+    for (const CutPolygon& polygon : cut) {
+        if (!seen(polygon, drawing.window)) continue;
+        std::vector<ValuedPoint> valued;
+        for (const CutCorner& corner : corners(polygon))
+            valued.push_back({on_drawing(drawing, corner.place), value_at(corner, field)});
+        add_in_bands(valued, scale.least, scale.most, paths);
+    }
+    std::string svg;
+    for (int band = 0; band < bands; ++band) {
+        const std::string& path = paths[static_cast<std::size_t>(band)];
+        if (path.empty()) continue;
+        const std::string colour = band_colour(scale, band);
+        svg += "<path fill=\"" + colour + "\" stroke=\"" + colour + "\" d=\"" + path + "\"/>";
+    }
+    return svg;
+}
+
+/// Its middle is in its place. The head is a part of it, but no more than a size that is seen well.
+void add_arrow(const Drawing& drawing, const Arrow& arrow, std::string& shafts, std::string& heads) {
+    constexpr double most_head = 5, least_length = 4;  // [pixels]
+    const double length = arrow.length * drawing.scale, head = std::min(most_head, 0.6 * length);
+    if (length < least_length) return;
+    const Point2 middle = on_drawing(drawing, arrow.place), along = {arrow.direction.x, -arrow.direction.y};
+    const auto at = [&](double forth, double aside) {
+        return Point2{middle.x + forth * along.x - aside * along.y, middle.y + forth * along.y + aside * along.x};
+    };
+    shafts += line_path(std::array{at(-length / 2, 0), at(length / 2 - head / 2, 0)});
+    heads += polygon_path(
+        std::array{at(length / 2, 0), at(length / 2 - head, 0.4 * head), at(length / 2 - head, -0.4 * head)});
+}
+
 }  // namespace
+
+ColourScale signed_scale(double least, double most) {
+    const double size = std::max(std::abs(least), std::abs(most));
+    return {least, most, [=](double fraction) {
+                return blue_to_red(0.5 + 0.5 * (least + fraction * (most - least)) / size);
+            }};
+}
 
 CutWindow extent(std::span<const CutPolygon> cut) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -136,9 +187,7 @@ std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window,
     std::map<std::pair<Region, bool>, std::string> paths;
     for (const CutPolygon& polygon : cut) {
         if (!seen(polygon, window)) continue;
-        std::vector<Point2> places;
-        for (const CutCorner& corner : corners(polygon)) places.push_back(on_drawing(drawing, corner.place));
-        paths[{polygon.region, polygon.of_prism}] += polygon_path(places);
+        paths[{polygon.region, polygon.of_prism}] += polygon_path(on_drawing(drawing, polygon));
     }
     std::string svg = opening(drawing, "picture cells");
     for (const auto& [cells, path] : paths) {
@@ -152,39 +201,39 @@ std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window,
     return svg + "</svg>";
 }
 
-std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, double least,
-                       double most, const CutWindow& window) {
+std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, const ColourScale& scale,
+                       const CutWindow& window) {
     const Drawing drawing = drawing_of(window);
-    std::array<std::string, bands> paths;
-    for (const CutPolygon& polygon : cut) {
-        if (!seen(polygon, window)) continue;
-        std::vector<ValuedPoint> valued;
-        for (const CutCorner& corner : corners(polygon)) {
-            valued.push_back({on_drawing(drawing, corner.place), value_at(corner, field)});
-        }
-        add_in_bands(valued, least, most, paths);
-    }
-    std::string svg = opening(drawing, "picture field");
-    for (int band = 0; band < bands; ++band) {
-        const std::string& path = paths[static_cast<std::size_t>(band)];
-        if (path.empty()) continue;
-        const std::string colour = band_colour(band);
-        svg += "<path fill=\"" + colour + "\" stroke=\"" + colour + "\" d=\"" + path + "\"/>";
-    }
+    return opening(drawing, "picture field") + field_paths(cut, field, scale, drawing) + "</svg>";
+}
+
+std::string draw_flow(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, const ColourScale& scale,
+                      const CutWindow& window, std::span<const CutPolygon> solids, std::span<const Arrow> arrows) {
+    const Drawing drawing = drawing_of(window);
+    std::string bodies, shafts, heads;
+    for (const CutPolygon& polygon : solids)
+        if (seen(polygon, window)) bodies += polygon_path(on_drawing(drawing, polygon));
+    for (const Arrow& arrow : arrows)
+        if (is_within(window, arrow.place)) add_arrow(drawing, arrow, shafts, heads);
+    std::string svg = opening(drawing, "picture field") + field_paths(cut, field, scale, drawing);
+    if (!bodies.empty())
+        svg += "<path class=\"outline\" d=\"" + bodies + "\"/><path class=\"solid\" d=\"" + bodies + "\"/>";
+    if (!shafts.empty())
+        svg += "<path class=\"shaft\" d=\"" + shafts + "\"/><path class=\"head\" d=\"" + heads + "\"/>";
     return svg + "</svg>";
 }
 
-std::string draw_colour_bar(const std::string& title, double least, double most) {
+std::string draw_colour_bar(const std::string& title, const ColourScale& scale) {
     constexpr double bar_width = 420, left = 20, right = 400;
     std::string svg = "<svg class=\"bar\" viewBox=\"0 0 " + pixels(bar_width) + " 58\" role=\"img\">";
     for (int band = 0; band < bands; ++band) {
         const double step = (right - left) / bands;
-        svg += "<rect fill=\"" + band_colour(band) + "\" x=\"" + pixels(left + step * band) +
+        svg += "<rect fill=\"" + band_colour(scale, band) + "\" x=\"" + pixels(left + step * band) +
                "\" y=\"20\" width=\"" + pixels(step + 0.5) + "\" height=\"16\"/>";
     }
     svg += "<text class=\"tick\" x=\"" + pixels(left) + "\" y=\"14\">" + escaped(title) + "</text>";
-    for (const double value : round_ticks(least, most, 6)) {
-        const double x = left + (right - left) * (value - least) / (most - least);
+    for (const double value : round_ticks(scale.least, scale.most, 6)) {
+        const double x = left + (right - left) * (value - scale.least) / (scale.most - scale.least);
         svg += "<text class=\"tick\" text-anchor=\"middle\" x=\"" + pixels(x) + "\" y=\"52\">" +
                readable(value, 5) + "</text>";
     }

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "report/arrows.h"
 #include "report/section.h"
+#include "report/svg.h"
 #include <kropla/simulate/fields.h>
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,11 +30,25 @@ struct CutWindow {
 [[nodiscard]] std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window,
                                      std::optional<Point2> mark = {});
 
-/// A field on a cut as inline SVG, in bands of one colour each between `least` and `most`: exact level lines.
+/// The values between which colours go.
+struct ColourScale {
+    double least, most;
+    std::function<std::string(double fraction)> colour = inferno;
+};
+
+/// White where values are zero, blue below and red above, as strong to both sides.
+[[nodiscard]] ColourScale signed_scale(double least, double most);
+
+/// A field on a cut as inline SVG, in bands of one colour each: exact level lines.
 [[nodiscard]] std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,
-                                     double least, double most, const CutWindow& window);
+                                     const ColourScale& scale, const CutWindow& window);
+
+/// The same of a flow: cells of `solids` are grey, with an outline, and arrows show where it goes.
+[[nodiscard]] std::string draw_flow(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,
+                                    const ColourScale& scale, const CutWindow& window,
+                                    std::span<const CutPolygon> solids, std::span<const Arrow> arrows);
 
 /// The colours of draw_field with numbers.
-[[nodiscard]] std::string draw_colour_bar(const std::string& title, double least, double most);
+[[nodiscard]] std::string draw_colour_bar(const std::string& title, const ColourScale& scale);
 
 }  // namespace kropla

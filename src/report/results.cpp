@@ -34,6 +34,10 @@ BodyResult body_result(const Table& steps, const std::string& name, const std::v
                     .velocity = vectors(steps, "u_" + name, "v_" + name, "w_" + name),
                     .volume = numbers(steps, "volume_" + name)};
     body.start_place = body.place.front();
+    if (has_column(steps, "force_x_" + name)) {
+        body.force = vectors(steps, "force_x_" + name, "force_y_" + name, "force_z_" + name);
+        body.spin = vectors(steps, "spin_x_" + name, "spin_y_" + name, "spin_z_" + name);
+    }
     if (!has_column(steps, "temperature_mean_" + name)) return body;
     body.coldest = numbers(steps, "temperature_min_" + name);
     body.mean = numbers(steps, "temperature_mean_" + name);
@@ -74,10 +78,11 @@ bool add_start(const Table& table, std::vector<BodyResult>& bodies) {
     return true;
 }
 
-std::vector<FaceResult> faces_of(const Table& steps, const std::vector<double>& dt) {
+/// What leaves through the faces, by columns that begin so.
+std::vector<FaceResult> faces_of(const Table& steps, const std::string& begin, const std::vector<double>& dt) {
     std::vector<FaceResult> faces;
     for (const char* name : face_names) {
-        const std::string column = std::string("heat_out_") + name;
+        const std::string column = begin + name;
         if (!has_column(steps, column)) return {};
         FaceResult face{name, numbers(steps, column), 0};
         face.total = integral(face.out, dt);
@@ -117,6 +122,35 @@ std::optional<EnergyBalance> energy_of(const Table& steps, const std::vector<Fac
     return balance;
 }
 
+/// The mass of what flows, where density and box are numbers of the case.
+std::optional<double> mass_of_flow(const RunFiles& run, const std::vector<BodyResult>& bodies) {
+    const auto density = number_of_case(run.case_text, "flow.region.\"surroundings\"", "density");
+    const auto min = vector_of_case(run.case_text, "domain", "min"), max = vector_of_case(run.case_text, "domain", "max");
+    if (!density || !min || !max) return {};
+    const Vec3 box = *max - *min;
+    double volume = box.x * box.y * box.z;
+    for (const BodyResult& body : bodies) volume -= body.volume.front();
+    return *density * volume;
+}
+
+std::optional<FlowResult> flow_of(const RunFiles& run, const std::vector<BodyResult>& bodies,
+                                  const std::vector<double>& dt) {
+    const Table& steps = run.steps;
+    if (!has_column(steps, "courant")) return {};
+    FlowResult flow{.faces = faces_of(steps, "volume_out_", dt),
+                    .courant = numbers(steps, "courant"),
+                    .passes = numbers(steps, "flow_passes"),
+                    .iterations = numbers(steps, "flow_iterations"),
+                    .rounds = numbers(steps, "flow_rounds"),
+                    .mass = mass_of_flow(run, bodies)};
+    for (const FaceResult& face : flow.faces) flow.flux_size = std::max(flow.flux_size, largest_size(face.out));
+    for (const BodyResult& body : bodies)
+        flow.flux_size = std::max(flow.flux_size, largest_size(sizes(body.velocity)) *
+                                                      std::pow(std::cbrt(std::abs(body.volume.front())), 2));
+    for (const double missed : numbers(steps, "mass_error_surroundings")) flow.mass_missed += std::abs(missed);
+    return flow;
+}
+
 }  // namespace
 
 double length_scale(const BodyResult& body) {
@@ -135,6 +169,29 @@ bool moves(const BodyResult& body) {
 
 bool is_rounding(double value, double size) { return std::abs(value) <= rounding_share * std::abs(size); }
 
+std::vector<int> notable_axes(const std::vector<Vec3>& vectors) {
+    Vec3 most;
+    for (const Vec3& vector : vectors)
+        for (int axis = 0; axis < 3; ++axis) most[axis] = std::max(most[axis], std::abs(vector[axis]));
+    const double largest = std::max({most.x, most.y, most.z});
+    std::vector<int> axes;
+    for (int axis = 0; axis < 3; ++axis)
+        if (most[axis] > notable_share * largest) axes.push_back(axis);
+    return axes;
+}
+
+std::vector<double> sizes(const std::vector<Vec3>& vectors) {
+    std::vector<double> all;
+    for (const Vec3& vector : vectors) all.push_back(norm(vector));
+    return all;
+}
+
+bool turns(const BodyResult& body) {
+    const double radius = body.volume.empty() ? 0 : 0.5 * std::cbrt(std::abs(body.volume.front()));
+    const double turning = radius * largest_size(sizes(body.spin)), going = largest_size(sizes(body.velocity));
+    return turning > notable_share * going;
+}
+
 RunResults results_of(const RunFiles& run) {
     RunResults results;
     if (run.steps.rows == 0) return results;
@@ -142,8 +199,9 @@ RunResults results_of(const RunFiles& run) {
     const std::vector<double> dt = numbers(run.steps, "dt");
     results.bodies = bodies_of(run.steps, dt);
     results.start_known = run.bodies && add_start(*run.bodies, results.bodies);
-    results.faces = faces_of(run.steps, dt);
+    results.faces = faces_of(run.steps, "heat_out_", dt);
     results.energy = energy_of(run.steps, results.faces, dt);
+    results.flow = flow_of(run, results.bodies, dt);
     return results;
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -57,14 +58,23 @@ std::string volume(const BodyResult& body) {
     return with_unit(body.volume.back(), "m^3") + changed;
 }
 
+/// What the flow does to a body: its largest speed, the force at the end and the largest.
+std::vector<std::string> flow_cells(const BodyResult& body) {
+    const std::vector<double> forces = sizes(body.force);
+    return {moves(body) ? with_unit(most_by_size(sizes(body.velocity)), "m/s", 3) : nothing,
+            with_unit(forces.back(), "N", 3), with_unit(most_by_size(forces), "N", 3)};
+}
+
 std::string draw_bodies(const RunResults& results) {
     if (results.bodies.empty()) return {};
-    const bool warm = !results.bodies.front().mean.empty();
+    const bool warm = !results.bodies.front().mean.empty(), in_a_flow = !results.bodies.front().force.empty();
     std::vector<std::string> head = {"body"};
     if (warm)
         head.insert(head.end(), {"mean temperature, start → end [K]", "least … most [K]", "heat given off",
                                  "at most"});
-    head.insert(head.end(), {"centre, at the start", "at the end", "speed at the end", "volume"});
+    head.insert(head.end(), {"centre, at the start", "at the end", "speed at the end"});
+    if (in_a_flow) head.insert(head.end(), {"at most", "force of the flow at the end", "at most"});
+    head.emplace_back("volume");
     std::string html = "<h3>Bodies</h3><div class=\"wide\"><table>" + table_row("th", head);
     for (const BodyResult& body : results.bodies) {
         std::vector<std::string> cells = {escaped(body.name)};
@@ -74,17 +84,21 @@ std::string draw_bodies(const RunResults& results) {
         else if (warm) cells.insert(cells.end(), {nothing, nothing});
         const double size = length_scale(body);
         cells.insert(cells.end(), {place_with_unit(body.start_place, size), place_with_unit(body.place.back(), size),
-                                   moves(body) ? with_unit(norm(body.velocity.back()), "m/s", 3) : "at rest",
-                                   volume(body)});
+                                   moves(body) ? with_unit(norm(body.velocity.back()), "m/s", 3) : "at rest"});
+        if (in_a_flow) std::ranges::copy(flow_cells(body), std::back_inserter(cells));
+        cells.push_back(volume(body));
         html += table_row("td", cells);
     }
     const char* taken = warm ? "<p class=\"soft\">Heat given off: what is conducted through the surface into the "
                                "surroundings; negative: into the body. What the surface itself sets free or radiates "
                                "is not in it.</p>"
                              : "";
+    const char* force = in_a_flow ? "<p class=\"soft\">Force of the flow: of pressure, with buoyancy, and of friction; "
+                                    "without the weight. Speeds are means over a step.</p>"
+                                  : "";
     const char* first =
         results.start_known ? "" : "<p class=\"soft\">For the start stands the end of the first step.</p>";
-    return html + "</table></div>" + taken + first;
+    return html + "</table></div>" + taken + force + first;
 }
 
 std::string draw_faces(const RunResults& results) {
@@ -116,6 +130,38 @@ std::string draw_energy(const RunResults& results) {
            brought("to hold regions at their temperature", energy.held) +
            row("stored at the end", with_unit(energy.end, "J", digits)) +
            row("error of the balance", error + ", " + share) + "</table>";
+}
+
+bool flows_through(const FlowResult& flow, const FaceResult& face) {
+    return !is_rounding(most_by_size(face.out), flow.flux_size);
+}
+
+/// What flows through the faces; nothing of a closed box.
+std::string draw_through_flow(const RunResults& results) {
+    if (!results.flow) return {};
+    std::string rows;
+    for (const FaceResult& face : results.flow->faces) {
+        if (!flows_through(*results.flow, face)) continue;
+        rows += table_row("td", {spoken_face(face.name), with_unit(face.out.back(), "m^3/s"),
+                                 with_unit(face.total, "m^3")});
+    }
+    if (rows.empty()) return {};
+    return "<h3>Flow through faces of the box</h3><table>" +
+           table_row("th", {"face", "volume that leaves, at the end", "in all (negative: comes in)"}) + rows + "</table>";
+}
+
+/// Of what flows, what is missed; in a sound run nothing but rounding.
+std::string draw_mass(const RunResults& results) {
+    if (!results.flow) return {};
+    const FlowResult& flow = *results.flow;
+    std::string missed = with_unit(flow.mass_missed, "kg", 2);
+    if (flow.mass && *flow.mass > 0) {
+        const double share = flow.mass_missed / *flow.mass;
+        missed = (is_rounding(share, 1) ? "none but rounding" : missed) + ", " + readable(share, 1) + " of the mass";
+    }
+    return "<h3>Mass of what flows</h3><table>" +
+           (flow.mass ? table_row("td", {"in the box, at the start", with_unit(*flow.mass, "kg")}) : "") +
+           table_row("td", {"error of the balance, of all steps together", missed}) + "</table>";
 }
 
 /// A chart over the run's time, in the unit that suits its values.
@@ -185,8 +231,13 @@ std::vector<double> displacement(const BodyResult& body, int axis) {
     return values;
 }
 
-/// Is it more than rounding along the axis?
+/// Is it more than rounding along the axis, and in a flow more than what the mesh makes of zero?
 bool moves_along(const BodyResult& body, int axis) {
+    if (!body.force.empty()) {
+        std::vector<Vec3> moved;
+        for (const Vec3& place : body.place) moved.push_back(place - body.start_place);
+        if (!std::ranges::count(notable_axes(moved), axis)) return false;
+    }
     return !is_rounding(most_by_size(displacement(body, axis)), length_scale(body));
 }
 
@@ -212,12 +263,63 @@ std::string draw_displacements(const RunResults& results) {
 
 std::string draw_speeds(const RunResults& results) {
     const auto moving = bodies_that(results, moves);
-    const auto speeds = [](const BodyResult& body) {
-        std::vector<double> all;
-        for (const Vec3& velocity : body.velocity) all.push_back(norm(velocity));
-        return all;
-    };
+    const auto speeds = [](const BodyResult& body) { return sizes(body.velocity); };
     return draw(results, "Speed" + whose(moving), "m/s", of_bodies(moving, speeds));
+}
+
+/// A line for each axis along which vectors have more than what the mesh makes of zero.
+std::vector<Series> components(const std::vector<Vec3>& vectors) {
+    std::vector<Series> series;
+    for (const int axis : notable_axes(vectors)) {
+        Series& s = series.emplace_back();
+        s.name = std::string(1, "xyz"[axis]);
+        for (const Vec3& vector : vectors) s.values.push_back(vector[axis]);
+    }
+    return series;
+}
+
+/// "Force on ball along z" and its line, or one for each axis that counts.
+std::string draw_components(const RunResults& results, const std::string& what, const char* around, const char* si,
+                            const std::vector<Vec3>& vectors) {
+    std::vector<Series> axes = components(vectors);
+    const std::string along = axes.size() == 1 ? around + axes.front().name : "";
+    return draw(results, what + along, si, std::move(axes));
+}
+
+/// What the flow does to bodies: of a few their velocity, where it is not along one axis, force and spin; of many the
+/// sizes.
+std::string draw_flow_around_bodies(const RunResults& results) {
+    const auto around = bodies_that(results, [](const BodyResult& body) { return !body.force.empty(); });
+    const auto turning = bodies_that(results, [](const BodyResult& body) { return turns(body); });
+    if (around.size() > own_charts)
+        return draw(results, "Size of the force of the flow", "N",
+                    of_bodies(around, [](const BodyResult& body) { return sizes(body.force); })) +
+               draw(results, "Spin" + whose(turning), "rad/s",
+                    of_bodies(turning, [](const BodyResult& body) { return sizes(body.spin); }));
+    std::string html;
+    for (const BodyResult* body : around) {
+        if (moves(*body) && notable_axes(body->velocity).size() > 1)
+            html += draw_components(results, "Velocity of " + body->name, " along ", "m/s", body->velocity);
+        html += draw_components(results, "Force of the flow on " + body->name, " along ", "N", body->force);
+        if (turns(*body)) html += draw_components(results, "Spin of " + body->name, " about ", "rad/s", body->spin);
+    }
+    return html;
+}
+
+std::string draw_flow_through_faces(const RunResults& results) {
+    std::vector<Series> faces;
+    if (results.flow)
+        for (const FaceResult& face : results.flow->faces)
+            if (flows_through(*results.flow, face)) faces.push_back({spoken_face(face.name), face.out});
+    const std::string through = faces.size() == 1 ? "Flow out through " + faces.front().name : "Flow out through faces";
+    return draw(results, through, "m^3/s", std::move(faces));
+}
+
+/// Said where lines may be left out.
+std::string left_out(const RunResults& results) {
+    if (!results.flow) return {};
+    return "<p class=\"soft\">Components and spins below " + readable(100 * notable_share) +
+           " % of what they belong to are what the mesh makes of zero, and are not drawn.</p>";
 }
 
 std::string draw_stored(const RunResults& results) {
@@ -233,10 +335,11 @@ std::string draw_stored(const RunResults& results) {
 std::string draw_results(const RunResults& results, const std::string& pictures) {
     if (results.time.empty()) return {};
     const std::string charts = draw_temperatures(results) + draw_heat(results) + draw_stored(results) +
-                               draw_displacements(results) + draw_speeds(results);
+                               draw_displacements(results) + draw_speeds(results) +
+                               draw_flow_around_bodies(results) + draw_flow_through_faces(results);
     const std::string content =
-        draw_bodies(results) + draw_faces(results) + draw_energy(results) +
-        (charts.empty() ? "" : "<h3>Over time</h3>" + not_all_lines(results.bodies.size(), "bodies") +
+        draw_bodies(results) + draw_faces(results) + draw_through_flow(results) + draw_energy(results) + draw_mass(results) +
+        (charts.empty() ? "" : "<h3>Over time</h3>" + not_all_lines(results.bodies.size(), "bodies") + left_out(results) +
                                    "<div class=\"charts\">" + charts + "</div>") +
         pictures;
     return content.empty() ? "" : "<section><h2>Results</h2>" + content + "</section>\n";

@@ -38,20 +38,39 @@ std::string unquoted(std::string_view quoted) {
     return text;
 }
 
+/// Three numbers as a TOML array begins; nothing if they are not there.
+std::optional<Vec3> read_vector(std::string_view text) {
+    Vec3 vector;
+    for (int axis = 0; axis < 3; ++axis) {
+        text.remove_prefix(std::min(text.find_first_not_of("[, "), text.size()));
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), vector[axis]);
+        if (error != std::errc()) return {};
+        text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
+    }
+    return vector;
+}
+
+/// What stands as `key` in the table `[section]` of a case as run, without blanks.
+std::optional<std::string> text_of_case(std::string_view case_text, std::string_view section, std::string_view key) {
+    const std::string header = '[' + std::string(section) + ']';
+    std::string wanted = std::string(key) + '=';
+    std::erase(wanted, '_');
+    bool inside = false;
+    while (!case_text.empty()) {
+        const std::size_t end = std::min(case_text.find('\n'), case_text.size());
+        const std::string line = stripped(case_text.substr(0, end));
+        case_text.remove_prefix(std::min(end + 1, case_text.size()));
+        if (line.starts_with('[')) inside = line == header;
+        if (inside && line.starts_with(wanted)) return line.substr(wanted.size());
+    }
+    return {};
+}
+
 Ending read_ending(const std::filesystem::path& path) {
     const std::string text = read_file(path);
     Ending ending{unquoted(value_of(text, "why")), {}};
     if (ending.why.empty()) throw FileError(path.string() + ": does not say why the run ended");
-    std::string_view place = value_of(text, "place");
-    Vec3 at;
-    int read = 0;
-    for (; read < 3 && !place.empty(); ++read) {
-        place.remove_prefix(std::min(place.find_first_not_of("[, "), place.size()));
-        const auto [stop, error] = std::from_chars(place.data(), place.data() + place.size(), at[read]);
-        if (error != std::errc()) break;
-        place.remove_prefix(static_cast<std::size_t>(stop - place.data()));
-    }
-    if (read == 3) ending.place = at;
+    ending.place = read_vector(value_of(text, "place"));
     return ending;
 }
 
@@ -86,22 +105,17 @@ RunFiles read_run_files(const std::filesystem::path& dir) {
 
 std::optional<double> number_of_case(std::string_view case_text, std::string_view section,
                                      std::string_view key) {
-    const std::string header = '[' + std::string(section) + ']';
-    std::string wanted = std::string(key) + '=';
-    std::erase(wanted, '_');
-    bool inside = false;
-    while (!case_text.empty()) {
-        const std::size_t end = std::min(case_text.find('\n'), case_text.size());
-        const std::string line = stripped(case_text.substr(0, end));
-        case_text.remove_prefix(std::min(end + 1, case_text.size()));
-        if (line.starts_with('[')) inside = line == header;
-        if (!inside || !line.starts_with(wanted)) continue;
-        double value = 0;
-        const char* last = line.data() + line.size();
-        const auto [stop, error] = std::from_chars(line.data() + wanted.size(), last, value);
-        if (error == std::errc() && stop == last) return value;
-    }
-    return {};
+    const std::optional<std::string> text = text_of_case(case_text, section, key);
+    if (!text) return {};
+    double value = 0;
+    const char* last = text->data() + text->size();
+    const auto [stop, error] = std::from_chars(text->data(), last, value);
+    return error == std::errc() && stop == last ? std::optional(value) : std::nullopt;
+}
+
+std::optional<Vec3> vector_of_case(std::string_view case_text, std::string_view section, std::string_view key) {
+    const std::optional<std::string> text = text_of_case(case_text, section, key);
+    return text ? read_vector(*text) : std::nullopt;
 }
 
 }  // namespace kropla

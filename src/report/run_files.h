@@ -43,5 +43,8 @@ struct RunFiles {
 /// knows the plain form in which a run writes its case, with the values of expressions behind them, not all of TOML.
 [[nodiscard]] std::optional<double> number_of_case(std::string_view case_text, std::string_view section,
                                                    std::string_view key);
+/// The same of three numbers, `[0, 0, -9.81]`.
+[[nodiscard]] std::optional<Vec3> vector_of_case(std::string_view case_text, std::string_view section,
+                                                 std::string_view key);
 
 }  // namespace kropla

@@ -15,6 +15,21 @@ std::string to_text(double value, std::chars_format format, int precision) {
     return {text.data(), result.ptr};
 }
 
+/// The colour at 0 ... 1 of an even row of colours, linear between them.
+std::string between(std::span<const std::uint32_t> colours, double fraction) {
+    const double place = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(place), colours.size() - 2);
+    const double rest = place - static_cast<double>(below);
+    std::string text = "#";
+    for (const int shift : {16, 8, 0}) {
+        const double a = (colours[below] >> shift) & 255, b = (colours[below + 1] >> shift) & 255;
+        const auto level = static_cast<unsigned>(std::lround(a + rest * (b - a)));
+        text += "0123456789abcdef"[level / 16];
+        text += "0123456789abcdef"[level % 16];
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string pixels(double value) {
@@ -87,17 +102,19 @@ std::vector<double> round_ticks(double least, double most, int count) {
 std::string inferno(double fraction) {
     constexpr std::array<std::uint32_t, 10> colours = {0x000004, 0x1b0c41, 0x4a0c6b, 0x781c6d, 0xa52c60,
                                                        0xcf4446, 0xed6925, 0xfb9b06, 0xf7d13d, 0xfcffa4};
-    const double place = std::clamp(fraction, 0.0, 1.0) * (colours.size() - 1);
-    const auto below = std::min(static_cast<std::size_t>(place), colours.size() - 2);
-    const double rest = place - static_cast<double>(below);
-    std::string text = "#";
-    for (const int shift : {16, 8, 0}) {
-        const double a = (colours[below] >> shift) & 255, b = (colours[below + 1] >> shift) & 255;
-        const auto level = static_cast<unsigned>(std::lround(a + rest * (b - a)));
-        text += "0123456789abcdef"[level / 16];
-        text += "0123456789abcdef"[level % 16];
-    }
-    return text;
+    return between(colours, fraction);
+}
+
+std::string light_blues(double fraction) {
+    constexpr std::array<std::uint32_t, 7> colours = {0xffffd9, 0xedf8b1, 0xc7e9b4, 0x7fcdbb,
+                                                      0x41b6c4, 0x1d91c0, 0x225ea8};
+    return between(colours, fraction);
+}
+
+std::string blue_to_red(double fraction) {
+    constexpr std::array<std::uint32_t, 9> colours = {0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7,
+                                                      0xfddbc7, 0xf4a582, 0xd6604d, 0xb2182b};
+    return between(colours, fraction);
 }
 
 }  // namespace kropla

@@ -14,30 +14,45 @@ namespace {
 using Prefix = std::pair<double, const char*>;
 constexpr std::array<Prefix, 8> prefixes = {
     {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}, {1e-12, "p"}}};
-constexpr std::array<const char*, 5> scaled = {"m", "m/s", "J", "W", "s"};
+// Units of volume [m^3], and from how much of one it is taken: they are far apart.
+struct CubicUnit {
+    double size;
+    const char* prefix;
+    double least;
+};
+constexpr std::array<CubicUnit, 4> cubic_units = {
+    {{1, "", 0.01}, {1e-6, "c", 0.9995}, {1e-9, "m", 1e-3}, {1e-18, "µ", 0}}};
+constexpr std::array<const char*, 7> scaled = {"m", "m/s", "J", "W", "N", "Pa", "s"};
 
 /// "m^3" as it is printed.
 std::string printed(std::string si) {
-    if (si.ends_with("^3")) si.replace(si.size() - 2, 2, "³");
-    if (si.ends_with("^2")) si.replace(si.size() - 2, 2, "²");
+    for (const auto& [power, sign] : {std::pair{"^3", "³"}, {"^2", "²"}})
+        if (const std::size_t at = si.find(power); at != std::string::npos) si.replace(at, 2, sign);
     return si;
+}
+
+/// A volume, or one per second, "m³/s".
+ScaledUnit cubic_unit_for(double size, const std::string& name) {
+    const auto fits = [&](const CubicUnit& unit) { return size >= unit.least * unit.size; };
+    const CubicUnit& unit = *std::ranges::find_if(cubic_units, fits);  // the last one fits
+    return {1 / unit.size, unit.prefix + name};
 }
 
 }  // namespace
 
 ScaledUnit unit_for(double size, const std::string& si) {
-    const bool cubic = si == "m^3";
+    const bool cubic = si == "m^3" || si == "m^3/s";
     const bool scales = cubic || std::ranges::find(scaled, si) != scaled.end();
     if (!scales || !(size > 0) || !std::isfinite(size)) return {1, printed(si)};
+    if (cubic) return cubic_unit_for(size, printed(si));
     const double least = si == "m/s" ? 0.1 : 0.9995;  // 0.89 m/s is as good as any
     const bool only_small = si.starts_with("m") || si == "s";  // no Mm, no ks
-    const auto unit_of = [&](const Prefix& prefix) { return cubic ? std::pow(prefix.first, 3) : prefix.first; };
     const auto fits = [&](const Prefix& prefix) {
-        return !(only_small && prefix.first > 1) && size >= least * unit_of(prefix);
+        return !(only_small && prefix.first > 1) && size >= least * prefix.first;
     };
     const auto found = std::ranges::find_if(prefixes, fits);
     const Prefix& prefix = found == prefixes.end() ? prefixes.back() : *found;
-    return {1 / unit_of(prefix), prefix.second + printed(si)};
+    return {1 / prefix.first, prefix.second + printed(si)};
 }
 
 std::string with_unit(double value, const std::string& si, int digits) {

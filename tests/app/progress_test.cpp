@@ -20,7 +20,7 @@ const ProgressRow row{.step = 12,
                       .touched_fraction = 0.073,
                       .mesh_seconds = 0.08,
                       .heat_seconds = 0.12,
-                      .temperatures = {},
+                      .bodies = {},
                       .seconds_left = 7.6};
 
 TEST(Progress, SaysWhatAStepDid) {
@@ -32,6 +32,18 @@ TEST(Progress, SaysWhatAStepDid) {
     EXPECT_EQ(progress_line(without),
               "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
               "left 0:08");
+}
+
+TEST(Progress, SaysOfAFlowItsSecondsAndWhatBodiesDo) {
+    ProgressRow flowing = row;
+    flowing.heat_seconds = {};
+    flowing.flow_seconds = 0.3;
+    flowing.bodies = "sphere 0.101 m/s";
+    EXPECT_EQ(progress_line(flowing),
+              "step 12/50  t 2.40 ms  worst R/r  5.8  swap      touched  7.3 %  mesh  0.08 s  "
+              "flow  0.30 s  sphere 0.101 m/s  left 0:08");
+    EXPECT_EQ(spoken_quantity(0.1014, "m/s"), "0.101 m/s");
+    EXPECT_EQ(spoken_quantity(-2.5e-5, "m/s"), "-25 um/s");
 }
 
 TEST(Progress, ColumnsStandUnderEachOther) {

@@ -65,6 +65,19 @@ TEST(Vtu, ComesBackBitForBit) {
     EXPECT_EQ(frame.fields[0].values, field.values);
 }
 
+TEST(Vtu, BringsBackVectors) {
+    const Folder folder;
+    const Mesh mesh = cube_of_tets(2);
+    const NodalVectorField velocity{"velocity", "m/s", mesh.position};
+    write_vtu(folder / "a.vtu", mesh, {}, nullptr, std::vector{velocity});
+    const Frame frame = read_vtu(folder / "a.vtu");
+    EXPECT_TRUE(frame.fields.empty());
+    ASSERT_EQ(frame.vectors.size(), 1u);
+    EXPECT_EQ(frame.vectors[0].name, "velocity");
+    EXPECT_EQ(frame.vectors[0].unit, "m/s");
+    EXPECT_EQ(frame.vectors[0].values, velocity.values);
+}
+
 TEST(Vtu, IsTheSameFileEachTime) {
     const Folder folder;
     const Mesh mesh = cube_of_tets(3);

@@ -45,6 +45,12 @@ void expect_sound(const std::string& html) {
     EXPECT_NE(html.find("a &lt; b &amp; c"), std::string::npos);  // the case, escaped
 }
 
+int count_of(const std::string& html, const std::string& what) {
+    int count = 0;
+    for (auto at = html.find(what); at != std::string::npos; at = html.find(what, at + 1)) ++count;
+    return count;
+}
+
 TEST(Page, ShowsAFinishedRun) {
     const std::string html = page_of({});
     expect_sound(html);
@@ -73,6 +79,20 @@ TEST(Page, ShowsARunWithoutHeat) {
     EXPECT_EQ(html.find("Temperature"), std::string::npos);
 }
 
+TEST(Page, ShowsAFlowFromWhereItFlows) {
+    const std::string html = page_of({.heat = false, .flow = true});
+    expect_sound(html);
+    for (const char* part : {"<h3>Speed [m/s], cut</h3>", "<h3>Speed [m/s], around the first body</h3>",
+                             "<h3>Pressure [Pa], cut</h3>"})
+        EXPECT_NE(html.find(part), std::string::npos) << part;
+    EXPECT_EQ(count_of(html, "class=\"picture field\""), 6);  // at the start nothing flows
+    EXPECT_EQ(count_of(html, "class=\"solid\""), 6);
+    EXPECT_EQ(count_of(html, "class=\"shaft\""), 4);
+    const std::string warm = page_of({.flow = true});
+    EXPECT_NE(warm.find("Temperature [K], cut"), std::string::npos);
+    EXPECT_NE(warm.find("Speed [m/s], cut"), std::string::npos);
+}
+
 TEST(Page, ShowsAnInterruptedRun) {
     for (const int rows : {0, 1, 3}) {
         const std::string html = page_of({.rows = rows});
@@ -89,12 +109,6 @@ void end_tiny_run(const std::filesystem::path& dir) {
     write_file(dir / ending_name,
                "# Why the run ended early.\nwhy = \"at t = 1 ms body \\\"a\\\" is 2e-05 m from the wall z min\"\n"
                "place = [1.5, 1.4, 0.5]  # m\n");
-}
-
-int count_of(const std::string& html, const std::string& what) {
-    int count = 0;
-    for (auto at = html.find(what); at != std::string::npos; at = html.find(what, at + 1)) ++count;
-    return count;
 }
 
 TEST(Page, BeginsWithWhyARunEndedAndShowsWhere) {

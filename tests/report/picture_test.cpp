@@ -50,7 +50,7 @@ TEST(Picture, DividesAFieldIntoBandsWithoutGaps) {
     const CutRow row;
     Array<Vertex, double> field(row.mesh.position.size());
     for (const Vertex v : row.mesh.position.indices()) field[v] = row.mesh.position[v].x;
-    const std::string svg = draw_field(row.cut, field, 0, 3, extent(row.cut));
+    const std::string svg = draw_field(row.cut, field, {0, 3}, extent(row.cut));
     EXPECT_NEAR(area_of_paths(svg, "fill=\"#[0-9a-f]*\" stroke=\"#[0-9a-f]*\""), 30000, 150);
     const std::regex band("<path fill");
     EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), band), {}), 32);

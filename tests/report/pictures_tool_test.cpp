@@ -19,9 +19,10 @@ bool has_screen_in_memory() { return std::system("command -v xvfb-run >/dev/null
 TEST(DrawPictures, DrawsATinyRun) {
     if (!has_screen_in_memory()) GTEST_SKIP() << "xvfb-run is not installed";
     const auto dir = test_folder("pictures");
-    write_tiny_run(dir);
+    write_tiny_run(dir, {.flow = true});
     ASSERT_EQ(run_tool(dir, dir / "out"), 0) << read_file(dir / "out.err");
-    for (const char* name : {"initial-mesh", "positions", "whole-box", "quality", "temperature"}) {
+    for (const char* name : {"initial-mesh", "positions", "whole-box", "quality", "temperature", "velocity",
+                             "pressure"}) {
         const std::string png = read_file(dir / "out" / (std::string(name) + ".png"));
         EXPECT_EQ(png.substr(1, 3), "PNG") << name;
         EXPECT_GT(png.size(), 10'000U) << name;  // not a blank sheet

@@ -85,6 +85,51 @@ TEST(ResultsPage, ShowsWhatThereIsAndNothingElse) {
     EXPECT_FALSE(has(html, "<td>x min</td>"));
 }
 
+/// A body that falls by 1 m in the flow that it makes, in a box that some of it leaves; noise along x and in its spin.
+constexpr const char* flow_text =
+    "step,time [s],dt [s],x_a [m],y_a [m],z_a [m],u_a [m/s],v_a [m/s],w_a [m/s],volume_a [m^3],area_a [m^2],"
+    "spin_x_a [rad/s],spin_y_a [rad/s],spin_z_a [rad/s],force_x_a [N],force_y_a [N],force_z_a [N],"
+    "volume_out_x_min [m^3/s],volume_out_x_max [m^3/s],volume_out_y_min [m^3/s],volume_out_y_max [m^3/s],"
+    "volume_out_z_min [m^3/s],volume_out_z_max [m^3/s],mass_error_surroundings [kg],courant,flow_passes,"
+    "flow_iterations,flow_rounds\n"
+    "1,2,2,0,0,4,1e-4,0,-0.5,8,24,1e-3,0,0,0,1e-5,0.02,1e-17,0,0,0,0,0.25,1e-15,0.5,4,30,2\n"
+    "2,3,1,0,0,3,1e-4,0,-0.25,8,24,1e-3,0,0,0,1e-5,0.03,1e-17,0,0,0,0,0.5,-1e-15,1.5,6,31,2\n";
+
+RunFiles flow_files(const std::string& steps) {
+    RunFiles run = files(steps, "body,name,x [m],y [m],z [m]\n1,a,0,0,5\n");
+    run.case_text = "[domain]\nmin = [0, 0, 0]\nmax = [2, 2, 4]\n[flow.region.\"surroundings\"]\ndensity = 1.5\n";
+    return run;
+}
+
+TEST(Results, TellOfAFlow) {
+    const RunResults results = results_of(flow_files(flow_text));
+    ASSERT_TRUE(results.flow);
+    const FlowResult& flow = *results.flow;
+    EXPECT_EQ(flow.courant, (std::vector<double>{0.5, 1.5}));
+    ASSERT_EQ(flow.faces.size(), 6u);
+    EXPECT_EQ(flow.faces[5].total, 1);
+    EXPECT_NEAR(flow.flux_size, 2, 1e-6);  // what the body pushes aside
+    EXPECT_EQ(flow.mass_missed, 2e-15);
+    EXPECT_EQ(flow.mass, 12);
+    const BodyResult& body = results.bodies[0];
+    EXPECT_EQ(notable_axes(body.velocity), std::vector<int>{2});
+    EXPECT_EQ(notable_axes(body.force), std::vector<int>{2});
+    EXPECT_FALSE(turns(body));
+    EXPECT_FALSE(results_of(files()).flow);
+}
+
+TEST(ResultsPage, ShowsAFlowWithoutItsNoise) {
+    const std::string html = draw_results(results_of(flow_files(flow_text)), "");
+    for (const char* part : {"<td>0.25 m/s</td><td>0.5 m/s</td><td>30 mN</td><td>30 mN</td><td>8 m³</td>",
+                             "<td>z max</td><td>0.5 m³/s</td><td>1 m³</td>", "Force of the flow on a along z [mN]",
+                             "Flow out through z max", "none but rounding, 2e-16 of the mass"})
+        EXPECT_TRUE(has(html, part)) << part << "\n" << html;
+    for (const char* part : {"x min", "Spin", "Velocity of a", "along x"}) EXPECT_FALSE(has(html, part)) << part;
+    std::string turning = flow_text;
+    for (std::size_t at; (at = turning.find("1e-3")) != std::string::npos;) turning.replace(at, 4, "0.25");
+    EXPECT_TRUE(has(draw_results(results_of(flow_files(turning)), ""), "Spin of a about x [rad/s]"));
+}
+
 TEST(ResultsPage, CallsAnErrorWhatIsOne) {
     std::string leaking = steps_text;
     leaking.replace(leaking.find("107.5"), 5, "106.5");

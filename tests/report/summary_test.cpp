@@ -56,6 +56,10 @@ TEST(Summary, ReadsNumbersOfTheCase) {
     EXPECT_FALSE(number_of_case(text, "b", "other"));
     EXPECT_FALSE(number_of_case(text, "b", "last"));
     EXPECT_FALSE(number_of_case("", "b", "last"));
+    const std::string flow = "[flow]\ngravity = [0, 0.5, -9.81]\nsize = [1, 2]\n";
+    EXPECT_EQ(vector_of_case(flow, "flow", "gravity"), (Vec3{0, 0.5, -9.81}));
+    EXPECT_FALSE(vector_of_case(flow, "flow", "size"));
+    EXPECT_FALSE(vector_of_case(flow, "flow", "force"));
 }
 
 }  // namespace

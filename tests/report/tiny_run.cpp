@@ -47,6 +47,22 @@ NodalField temperature_of(const Mesh& mesh, int height) {
     return field;
 }
 
+/// The body falls with 1 m/s, and takes along what is next to it; at the start all is at rest.
+void add_flow(const Mesh& mesh, int height, double speed, std::vector<NodalField>& fields,
+              std::vector<NodalVectorField>& vectors) {
+    NodalField pressure{"pressure", "Pa", Array<Vertex, double>(mesh.position.size())};
+    NodalVectorField velocity{"velocity", "m/s", Array<Vertex, Vec3>(mesh.position.size())};
+    const Vec3 centre = {3, 3, height + 1.0};
+    for (const Vertex v : mesh.position.indices()) {
+        const Vec3 away = mesh.position[v] - centre;
+        if (away == Vec3{}) continue;  // the one vertex within the body
+        pressure.values[v] = -speed * away.z / squared_norm(away) - 10 * speed * (mesh.position[v].z - 6);
+        velocity.values[v] = {0, 0, -speed / squared_norm(away)};
+    }
+    fields.push_back(std::move(pressure));
+    vectors.push_back(std::move(velocity));
+}
+
 }  // namespace
 
 void write_tiny_run(const std::filesystem::path& dir, const TinyRun& run) {
@@ -66,7 +82,9 @@ void write_tiny_run(const std::filesystem::path& dir, const TinyRun& run) {
         std::vector<NodalField> fields;
         if (run.heat) fields.push_back(temperature_of(mesh, height));
         const std::string name = "frames/0000" + std::to_string(step) + ".vtu";
-        write_vtu(dir / name, mesh, fields);
+        std::vector<NodalVectorField> vectors;
+        if (run.flow) add_flow(mesh, height, step > 0 ? 1 : 0, fields, vectors);
+        write_vtu(dir / name, mesh, fields, nullptr, vectors);
         entries.push_back({step * 0.1, name});
     }
     write_pvd(dir / "frames.pvd", entries);

@@ -46,6 +46,7 @@ struct TinyRun {
     double worst = 8.5;      // R/r of step 3
     std::string steps = {};  // instead of rows: the whole steps.csv
     bool bodies = true;      // bodies.csv is there
+    bool flow = false;       // frames with a pressure and a velocity, after the start
 };
 
 /// Leaves in `dir`, which is emptied, what a run of a body of two cubes falling through a box of 6 x 6 x 12

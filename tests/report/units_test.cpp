@@ -13,6 +13,11 @@ TEST(Units, SuitTheSize) {
     EXPECT_EQ(with_unit(0.08, "m/s"), "80 mm/s");
     EXPECT_EQ(with_unit(4.18879e-9, "m^3"), "4.189 mm³");
     EXPECT_EQ(with_unit(20, "m^3"), "20 m³");
+    EXPECT_EQ(with_unit(0.5, "m^3/s"), "0.5 m³/s");
+    EXPECT_EQ(with_unit(1.767e-6, "m^3"), "1.767 cm³");
+    EXPECT_EQ(with_unit(3e-10, "m^3/s"), "0.3 mm³/s");
+    EXPECT_EQ(with_unit(1.94e-2, "N", 3), "19.4 mN");
+    EXPECT_EQ(with_unit(1507, "Pa", 3), "1.51 kPa");
     EXPECT_EQ(with_unit(12000, "m"), "12000 m");
     EXPECT_EQ(with_unit(3e-18, "J"), "3e-06 pJ");
 }

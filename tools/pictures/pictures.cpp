@@ -2,7 +2,9 @@
 // It draws by VTK, which needs a screen: tools/draw-pictures gives it one in memory.
 
 #include <kropla/base/error.h>
+#include "flow.h"
 #include "frames.h"
+#include "layout.h"
 #include "scene.h"
 #include "sheet.h"
 
@@ -11,8 +13,6 @@
 #include <vtkPointData.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
@@ -25,29 +25,13 @@ namespace kropla::pictures {
 namespace {
 
 constexpr Colour window_colour = {0.75, 0.10, 0.15};
-constexpr Colour border_colour = {0.55, 0.60, 0.66};
 constexpr Colour faint = {0.40, 0.44, 0.50};
-
-std::string time_label(double time) { return fmt::format("t = {:.3g} ms", time * 1e3); }
 
 std::string thousands(vtkIdType n) {
     std::string digits = std::to_string(n);
     for (std::ptrdiff_t i = std::ssize(digits) - 3; i > 0; i -= 3)
         digits.insert(static_cast<std::size_t>(i), 1, ' ');
     return digits;
-}
-
-/// The whole box, fitted into `place`.
-View whole_box(const RunFrame& frame, const Place& place) {
-    const Vec3 extent = frame.max - frame.min;
-    const Vec3 middle = 0.5 * (frame.min + frame.max);
-    const double scale = std::min(place.width / extent.x, place.height / extent.z);
-    const double width = extent.x * scale, height = extent.z * scale;
-    return {{place.left + (place.width - width) / 2, place.top + (place.height - height) / 2, width, height},
-            middle.x,
-            frame.centre.y,
-            middle.z,
-            extent.z};
 }
 
 /// A view of the neighbourhood of the first body: `radii` of its radii from the middle to the upper edge.
@@ -64,39 +48,9 @@ Place window_in(const View& outer, const View& inner) {
             height};
 }
 
-/// The largest of 1, 2 or 5 times a power of ten that is no more than `most`.
-double round_number(double most) {
-    const double ten = std::pow(10.0, std::floor(std::log10(most)));
-    return (most >= 5 * ten ? 5 : most >= 2 * ten ? 2 : 1) * ten;
-}
-
-/// A round length [m] of up to a third of the view's width.
-double bar_length(const View& view) { return round_number(view.place.width * metres_per_pixel(view) / 3); }
-
 void add_mesh_view(Sheet& sheet, const View& view, const RunFrame& frame, double line_width) {
     add_view(sheet, view, {coloured_by_region(opened(frame.grid, frame.centre.y), line_width)});
     add_outline(sheet, view.place, border_colour, 1.5);
-}
-
-/// The colours of a map, from least to most upwards, with round numbers beside them.
-void add_colour_bar(Sheet& sheet, const Place& place, vtkScalarsToColors* colours, double least,
-                    double most) {
-    std::vector<Colour> bands(static_cast<std::size_t>(place.height));
-    for (std::size_t i = 0; i < bands.size(); ++i) {
-        const double fraction = (static_cast<double>(i) + 0.5) / static_cast<double>(bands.size());
-        std::array<double, 3> rgb;
-        colours->GetColor(most - (most - least) * fraction, rgb.data());
-        bands[i] = {rgb[0], rgb[1], rgb[2]};
-    }
-    add_bands(sheet, place, bands);
-    add_outline(sheet, place, border_colour, 1);
-    const double step = round_number((most - least) / 4);
-    for (double value = std::ceil(least / step) * step; value <= most * (1 + 1e-9); value += step) {
-        const double y = place.top + place.height * (most - value) / (most - least);
-        add_filled(sheet, {place.left + place.width, y - 0.75, 7, 1.5}, border_colour);
-        add_text(sheet, place.left + place.width + 12, y, fmt::format("{:.4g}", value),
-                 {.size = 18, .align = 0});
-    }
 }
 
 /// "72 562 tetrahedra and 1 812 prisms"
@@ -149,25 +103,6 @@ void draw_positions(const std::vector<RunFrame>& frames, const std::filesystem::
         if (i + 1 == frames.size()) add_scale_bar(sheet, view, bar_length(view));
     }
     write_png(sheet, file);
-}
-
-/// Whole boxes side by side, one per frame; `add` draws a view of a frame. Returns the sheet for what else it
-/// holds.
-template <class Add>
-Sheet boxes_side_by_side(const std::vector<RunFrame>& frames, double right_margin, Add add) {
-    const Vec3 extent = frames.front().max - frames.front().min;
-    const double gap = 18, count = static_cast<double>(frames.size());
-    const double width = (1600 - right_margin - gap) / count - gap;
-    const double height = std::min(800.0, width * extent.z / extent.x);
-    Sheet sheet = make_sheet(1600, static_cast<int>(height + gap + 52));
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        const double left = gap + static_cast<double>(i) * (width + gap);
-        const View view = whole_box(frames[i], {left, gap, width, height});
-        add(sheet, view, frames[i]);
-        add_text(sheet, left + width / 2, gap + height + 26, time_label(frames[i].time), {.size = 24});
-        if (i + 1 == frames.size()) add_scale_bar(sheet, view, bar_length(view));
-    }
-    return sheet;
 }
 
 void draw_boxes(const std::vector<RunFrame>& frames, const std::filesystem::path& file) {
@@ -229,6 +164,7 @@ void draw_all(const std::filesystem::path& dir, const std::filesystem::path& out
     draw_boxes(three, out / "whole-box.png");
     draw_quality(three, out / "quality.png");
     if (has_field(ten.front(), "temperature")) draw_temperature(read_evenly(dir, 4), out / "temperature.png");
+    if (has_field(ten.front(), "velocity")) draw_flow(dir, out / "velocity.png", out / "pressure.png");
 }
 
 }  // namespace

@@ -12,13 +12,17 @@
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkPlane.h>
+#include <vtkPoints.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <initializer_list>
+#include <string>
 
 namespace kropla::pictures {
 
@@ -155,6 +159,44 @@ vtkSmartPointer<vtkActor> coloured_by_quality(vtkPolyData* facets, vtkScalarsToC
     return actor;
 }
 
+vtkSmartPointer<vtkActor> plain(vtkPolyData* facets, double red, double green, double blue) {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(facets);
+    mapper->ScalarVisibilityOff();
+    const vtkSmartPointer<vtkActor> actor = flat_actor(mapper, 1.0);
+    actor->GetProperty()->EdgeVisibilityOff();
+    actor->GetProperty()->LightingOff();
+    actor->GetProperty()->SetColor(red, green, blue);
+    return actor;
+}
+
+vtkSmartPointer<vtkActor> drawn_arrows(std::span<const Arrow> arrows, const CutPlane& plane, double thickness,
+                                       double in_front) {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> shapes;
+    const auto add = [&](const Arrow& arrow, std::initializer_list<Point2> corners) {
+        shapes->InsertNextCell(static_cast<int>(corners.size()));
+        for (const auto [forth, aside] : corners) {
+            const double right = arrow.place.x + forth * arrow.direction.x - aside * arrow.direction.y,
+                         up = arrow.place.y + forth * arrow.direction.y + aside * arrow.direction.x;
+            const Vec3 p = plane.origin + right * plane.right + up * plane.up;
+            shapes->InsertCellPoint(points->InsertNextPoint(p.x, p.y, p.z));
+        }
+    };
+    for (const Arrow& arrow : arrows) {
+        const double half = arrow.length / 2, head = std::min(5 * thickness, 0.6 * arrow.length), neck = half - head;
+        const double thin = std::min(thickness / 2, 0.15 * head), wide = 0.4 * head;
+        add(arrow, {{-half, -thin}, {neck, -thin}, {neck, thin}, {-half, thin}});
+        add(arrow, {{neck, -wide}, {half, 0}, {neck, wide}});
+    }
+    vtkNew<vtkPolyData> all;
+    all->SetPoints(points);
+    all->SetPolys(shapes);
+    vtkSmartPointer<vtkActor> actor = plain(all, 0.05, 0.10, 0.20);
+    actor->SetPosition(0, -in_front, 0);
+    return actor;
+}
+
 vtkSmartPointer<vtkActor> outlines_of_bodies(vtkPolyData* facets, double line_width) {
     vtkDataArray* region = facets->GetCellData()->GetArray("region");
     vtkNew<vtkCellArray> of_bodies;
@@ -192,6 +234,18 @@ vtkSmartPointer<vtkScalarsToColors> heat_colours(double least, double most) {
         const auto [r, g, b] = unpacked(inferno[i]);
         const double fraction = static_cast<double>(i) / (inferno.size() - 1);
         colours->AddRGBPoint(least + fraction * (most - least), r, g, b);
+    }
+    return colours;
+}
+
+vtkSmartPointer<vtkScalarsToColors> colours_of(const ColourScale& scale) {
+    constexpr int steps = 64;
+    auto colours = vtkSmartPointer<vtkColorTransferFunction>::New();
+    for (int i = 0; i <= steps; ++i) {
+        const double fraction = static_cast<double>(i) / steps;
+        const auto rgb = static_cast<std::uint32_t>(std::stoul(scale.colour(fraction).substr(1), nullptr, 16));
+        const auto [r, g, b] = unpacked(rgb);
+        colours->AddRGBPoint(scale.least + fraction * (scale.most - scale.least), r, g, b);
     }
     return colours;
 }

@@ -1,10 +1,15 @@
 #pragma once
 
+#include "report/arrows.h"
+#include "report/picture.h"
+
 #include <vtkActor.h>
 #include <vtkPolyData.h>
 #include <vtkScalarsToColors.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
+
+#include <span>
 
 namespace kropla::pictures {
 
@@ -26,11 +31,21 @@ namespace kropla::pictures {
 [[nodiscard]] vtkSmartPointer<vtkActor> coloured_by_quality(vtkPolyData* facets, vtkScalarsToColors* colours,
                                                             double line_width);
 
-/// The lines in which the surfaces of the bodies meet the cut that `opened` made.
+/// Facets in one colour, without edges.
+[[nodiscard]] vtkSmartPointer<vtkActor> plain(vtkPolyData* facets, double red, double green, double blue);
+
+/// Flat arrows that a view sees in front of everything: in the plane `plane`, dark.
+[[nodiscard]] vtkSmartPointer<vtkActor> drawn_arrows(std::span<const Arrow> arrows, const CutPlane& plane,
+                                                     double thickness, double in_front);
+
+/// The lines in which the surfaces of the bodies meet the cut that `opened` made, or `section`.
 [[nodiscard]] vtkSmartPointer<vtkActor> outlines_of_bodies(vtkPolyData* facets, double line_width);
 
 /// Black over red to light yellow, even to the eye: the map "inferno" of van der Walt and Smith (CC0).
 [[nodiscard]] vtkSmartPointer<vtkScalarsToColors> heat_colours(double least, double most);
+
+/// Those of a scale of the report.
+[[nodiscard]] vtkSmartPointer<vtkScalarsToColors> colours_of(const ColourScale& scale);
 
 /// One colour per unit of R/r from 3 (perfect) to 10, pale to dark; darkest beyond.
 [[nodiscard]] vtkSmartPointer<vtkScalarsToColors> quality_colours();
