@@ -50,7 +50,7 @@ class ShortFlow:
 
 FLOWS = {
     "stokes_cube": ShortFlow(["size.surface=2.5e-3", "size.far=0.012", "time.steps=1", "time.end=0.02"],
-                             {"force_z_sphere [N]": (-0.0030831, -0.0029552)}),
+                             {"force_z_sphere [N]": (-0.0030647, -0.0029735)}),
     "sphere_re100": ShortFlow(["size.surface=0.15", "size.growth=0.3", "size.far=3", "time.steps=6", "time.end=6"],
                               {"force_x_sphere [N]": (0.470, 0.475)}),
     "settling": ShortFlow(["size.surface=2.5e-3", "size.growth=0.3", "size.far=0.02", "time.steps=3", "time.end=0.06"],

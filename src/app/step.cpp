@@ -177,10 +177,12 @@ private:
     /// The flow, and where bodies go in it.
     Answer solve_flow(const StepToSolve& step, Array<Vertex, Vec3>& velocity) {
         constexpr double agreed = 3e-4;   // [-] of what acts on a body
+        constexpr double of_mass = 1e-5;  // [-] a hundredth of what forces ask for, for the sake of the mass
         constexpr double let_pass = 1.1;  // [-] of the Courant number: no step is taken back for a little
         report.rounds = step.round;
         FlowOptions options = it_.flow->options;
         options.bodies = surface_velocities(step.dt);
+        options.tolerance = of_mass;
         FlowState flow = flow_state(it_, state_.fields);
         try {
             report.flow = step_flow(ranks_, step.before, step.current, options, flow, step.time, step.dt,
