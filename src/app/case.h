@@ -4,7 +4,7 @@
 #include <kropla/domain/domain.h>
 #include <kropla/simulate/flow.h>
 #include <kropla/simulate/heat.h>
-#include <kropla/simulate/rigid_motion.h>
+#include "app/rigid_motion.h"
 #include <kropla/simulate/species.h>
 
 #include <array>

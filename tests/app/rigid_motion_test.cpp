@@ -1,6 +1,7 @@
 // Bodies that go where forces take them, in laws of force that are known in closed form.
 #include "meshes.h"
-#include <kropla/simulate/rigid_motion.h>
+#include "../mesh/meshes.h"
+#include "app/rigid_motion.h"
 
 #include <gtest/gtest.h>
 

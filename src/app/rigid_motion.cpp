@@ -1,4 +1,4 @@
-#include <kropla/simulate/rigid_motion.h>
+#include "app/rigid_motion.h"
 
 #include "simulate/elements.h"
 
