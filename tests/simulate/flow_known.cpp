@@ -1,5 +1,5 @@
 // Spheres in viscous liquids.
-//   [Happel, Brenner 1965] Low Reynolds number hydrodynamics: in a sphere, l the ratio of the radii, the drag is
+//   [Happel, Brenner 1965] Low Reynolds number hydrodynamics: in a sphere, l the ratio of radii, the drag is
 //     (1 - l^5) / (1 - 9/4 l + 5/2 l^3 - 9/4 l^5 + l^6).
 //   [Brenner 1961] The slow motion of a sphere through a viscous fluid towards a plane surface. Chem. Eng.
 //     Sci. 16.
@@ -55,11 +55,11 @@ Outcome lasting(const Ranks& ranks, const Mesh& mesh, double exact) {
 /// The sphere with prisms, in this box; sizes on it, and as they grow [m].
 Domain sphere_in(const Box& box, const SizeField& size, const Motion& motion) {
     Domain domain{.box = box, .bodies = {}, .size = size};
-    domain.bodies.push_back(
-        {.name = "sphere",
-         .shape = {.centre = {}, .semi_axes = {1, 1, 1}, .orientation = {}},
-         .motion = motion,
-         .layer = LayerOptions{.count = 3, .first_height = 0.3 * size.surface, .growth = 1.4}});
+    Body& sphere = domain.bodies.emplace_back();
+    sphere.name = "sphere";
+    sphere.shape.semi_axes = {1, 1, 1};
+    sphere.motion = motion;
+    sphere.layer = LayerOptions{.count = 3, .first_height = 0.3 * size.surface, .growth = 1.4};
     return domain;
 }
 
