@@ -11,7 +11,7 @@
 # make bench-spread  ways to spread a body's displacement into its surroundings
 # make bench-transfer  1000 transfers to and fro, by interpolation and by projection: docs/transfer.md
 # make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer
-# make validate   heat, by problems with known solutions, as fine as the tests take them and finer: docs/validation.md
+# make validate   heat and flow, by problems with known solutions, as fine as the tests take them and finer: docs/validation.md
 # Each installs the Debian packages that are missing.
 
 .PHONY: all demo test flood bench bench-peers bench-engine bench-strategies bench-spread bench-transfer endurance \

@@ -1,5 +1,6 @@
-// Problems with known solutions (tests/simulate/heat_problems.h), as fine as the tests take them and finer, in one table:
-// docs/validation.md.
+// Problems with known solutions (tests/simulate/heat_problems.h, flow_known.h), as fine as the tests take them
+// and finer, in a table of heat and one of flow: docs/validation.md.
+#include "simulate/flow_known.h"
 #include "simulate/heat_problems.h"
 
 #include <cstdio>
@@ -18,7 +19,7 @@ struct Problem {
     std::function<Outcome(const Ranks&, int fineness)> solve;
 };
 
-const std::vector<Problem> problems = {
+const std::vector<Problem> heat = {
     {"one phase freezes, Ste 0.1", [](const Ranks& r, int f) { return one_phase_stefan(r, 0.1, f); }},
     {"one phase freezes, Ste 1", [](const Ranks& r, int f) { return one_phase_stefan(r, 1, f); }},
     {"two phases, all properties one", [](const Ranks& r, int f) { return two_phase_stefan(r, unit_phases, f); }},
@@ -34,7 +35,14 @@ const std::vector<Problem> problems = {
     {"source that moves", [](const Ranks& r, int f) { return moving_source(r, 0.25, f); }},
 };
 
-void print_row(const Problem& problem, int fineness, const Outcome& outcome) {
+const std::vector<Problem> flow = {
+    {"sphere in a sphere", drag_in_sphere},
+    {"sphere in a cube", drag_in_cube},
+    {"sphere to the floor", way_to_floor},
+    {"sphere that swings", swinging_sphere},
+};
+
+void print_rows(const Problem& problem, int fineness, const Outcome& outcome) {
     for (std::size_t k = 0; k < outcome.reached.size(); ++k) {
         const Reached& value = outcome.reached[k];
         const bool first = k == 0;
@@ -43,8 +51,27 @@ void print_row(const Problem& problem, int fineness, const Outcome& outcome) {
                     value.what.c_str(), value.exact, value.value, 100 * value.error(),
                     first ? outcome.steps.c_str() : "");
     }
+    std::fflush(stdout);
+}
+
+void print_energy(const Outcome& outcome) {
     std::printf("| | | | energy, of a step [-] | 0 | %.0e | | passes: %d |\n", outcome.balance, outcome.passes);
     std::fflush(stdout);
+}
+
+/// Of the problems whose names contain what is wanted.
+void print_table(const PetscSession& petsc, const std::vector<Problem>& problems, const std::string& wanted,
+                 bool with_energy) {
+    std::puts("| problem | fineness | mesh | quantity | exact | reached | error | steps |\n"
+              "|---|---|---|---|---|---|---|---|");
+    for (const Problem& problem : problems) {
+        if (problem.name.find(wanted) == std::string::npos) continue;
+        for (int fineness : {1, 2}) {
+            const Outcome outcome = problem.solve(petsc.all_ranks(), fineness);
+            print_rows(problem, fineness, outcome);
+            if (with_energy) print_energy(outcome);
+        }
+    }
 }
 
 }  // namespace
@@ -54,11 +81,9 @@ int main(int count, char** words) {
     try {
         const PetscSession petsc;
         const std::string wanted = count > 1 ? words[1] : "";
-        std::puts("| problem | fineness | mesh | quantity | exact | reached | error | steps |\n|---|---|---|---|---|---|---|---|");
-        for (const Problem& problem : problems) {
-            if (problem.name.find(wanted) == std::string::npos) continue;
-            for (int fineness : {1, 2}) print_row(problem, fineness, problem.solve(petsc.all_ranks(), fineness));
-        }
+        print_table(petsc, heat, wanted, true);
+        std::puts("");
+        print_table(petsc, flow, wanted, false);
         return EXIT_SUCCESS;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());

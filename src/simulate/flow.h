@@ -100,7 +100,9 @@ struct FlowReport {
     double error = 0;    // [-] what is left of the first residual
     std::vector<BodyForce> bodies = {};    // of solid ones
     std::array<double, 6> face_flux = {};  // [m^3/s] out through each face
-    std::array<Vec3, 6> face_force = {};   // [N] on each face; nothing where it is open
+    // [N] on each face; nothing where it is open. Where faces meet, what acts on vertices is of the face
+    // across that direction, else of both: of shear a share of the cells' size goes to faces beside.
+    std::array<Vec3, 6> face_force = {};
     double net_flux = 0;  // [m^3/s] out of everything: zero but for the shape of what is given, by facets
     double largest_courant = 0;  // [-] heights of a cell that the flow crosses in the step
 };

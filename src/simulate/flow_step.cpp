@@ -10,6 +10,7 @@
 #include "simulate/stop.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -118,6 +119,7 @@ public:
             report.face_flux[face] = flux_through(boundary_.faces[face], current_.position, guess_.velocity);
             report.net_flux += report.face_flux[face];
         }
+        report.face_force = face_forces(reaction);
         report.largest_courant = largest_courant();
         return report;
     }
@@ -322,6 +324,34 @@ private:
         double sum = 0;
         for (Vertex v : vertices) sum += values[v];
         return sum / static_cast<double>(n);
+    }
+
+    /// Where faces meet, each direction is of the one across it, else of all alike that hold it.
+    [[nodiscard]] std::array<Vec3, 6> face_forces(const Array<Vertex, Vec3>& reaction) const {
+        Array<Vertex, unsigned> faces(reaction.size(), 0);  // that a vertex stands on, a bit each
+        for (std::size_t face = 0; face < 6; ++face)
+            for (const auto& facet : boundary_.faces[face])
+                for (Vertex v : facet) faces[v] |= 1u << face;
+        for (const SolidSurface& solid : boundary_.solids)
+            for (Vertex v : solid.vertices) faces[v] = 0;
+        std::array<Vec3, 6> forces = {};
+        for (int m = 0; m < 3; ++m) {
+            const unsigned across = 3u << (2 * m);
+            unsigned hold = 0;  // this direction of the velocity
+            for (std::size_t face = 0; face < 6; ++face) {
+                const FlowFace::Kind kind = options_.faces[face].kind;
+                const bool along = kind == FlowFace::Kind::wall || kind == FlowFace::Kind::velocity;
+                const bool slips = kind == FlowFace::Kind::slip && (across >> face & 1u) != 0;
+                if (along || slips) hold |= 1u << face;
+            }
+            for (Vertex v : numbering().vertex) {
+                const unsigned all = faces[v] & hold, those = (all & across) != 0 ? all & across : all;
+                for (std::size_t face = 0; face < 6; ++face)
+                    if ((those >> face & 1u) != 0)
+                        forces[face][m] -= reaction[v][m] / std::popcount(those);
+            }
+        }
+        return forces;
     }
 
     /// The residuals of momentum at all vertices, on all ranks.

@@ -86,6 +86,10 @@ TEST(FlowExact, HydrostaticPressureIsLinear) {
         -1000 * 0.35 * 0.35 * 0.35 * options.gravity;  // what the body displaces, after its layer
     EXPECT_LT(distance(report.bodies[0].force, buoyancy) / norm(buoyancy), 1e-8);
     EXPECT_LT(norm(report.bodies[0].torque) / norm(buoyancy), 1e-8);
+    Vec3 on_all = report.bodies[0].force;  // the weight of the liquid
+    for (const Vec3& force : report.face_force) on_all += force;
+    EXPECT_LT(distance(on_all, 1000 * options.gravity + buoyancy) / norm(buoyancy), 1e-8);
+    EXPECT_GT(report.face_force[1].x, 100);
 }
 
 // All is carried along: the velocity is uniform, and the pressure balances what accelerates it.

@@ -51,6 +51,15 @@ void give_volume(Mesh& mesh, double radius, double thick) {
     }
 }
 
+/// The same for the sphere around everything; what is within `thick` stays.
+void give_outer_volume(Mesh& mesh, double radius, double thick) {
+    double volume = 0;
+    for_each_share(mesh, living_cells(mesh), [&](const auto&, Vertex, double share) { volume += share; });
+    const double grown = std::cbrt(4 * std::numbers::pi / 3 * radius * radius * radius / volume);
+    for (Vec3& x : mesh.position)
+        x = (1 + (grown - 1) * std::max(norm(x) - thick, 0.0) / (radius - thick)) * x;
+}
+
 }  // namespace
 
 VectorQuantity velocity_of(const std::function<Vec3(const Vec3& place, double t)>& velocity) {
@@ -107,7 +116,7 @@ Mesh sphere_in_cube(const SphereInCube& shape) {
         // Even angles, as seen from the middle of a cube's face, make cells alike.
         Vec3 even = p / shell;
         for (int axis = 0; axis < 3; ++axis) even[axis] = std::tan(even[axis] * std::numbers::pi / 4);
-        const Vec3 round = normalised(even), square = even / largest_part(even);
+        const Vec3 round = normalised(even), square = shape.round ? round : even / largest_part(even);
         if (shell <= body) return (shape.radius * shell / body) * round;
         const double s = 1.0 * (shell - body - 1) / shape.out;  // 0 at the layer's shell, 1 on the cube
         const double grown = thick * std::pow(shape.half / thick, s);
@@ -119,6 +128,7 @@ Mesh sphere_in_cube(const SphereInCube& shape) {
     });
     Mesh mesh = with_layer(tets, {}, surroundings, shape.prisms, shape.layer / thick);
     give_volume(mesh, shape.radius, thick);
+    if (shape.round) give_outer_volume(mesh, shape.half, thick);
     return mesh;
 }
 

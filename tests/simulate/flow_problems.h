@@ -25,11 +25,13 @@ Mesh moved(const Mesh& start, const Vec3& shift, double angle, double shake, std
 
 /// A sphere of this radius [m] around the origin, region 1, in a cube of half-width `half` [m]: `around`
 /// cells a quarter, so many prisms of the height `layer` in all, and `out` shells of tets that grow outwards.
+/// The facets of the sphere, and of that around it if it is round, keep their volumes.
 struct SphereInCube {
     double radius, half;
     int around, prisms;
     double layer;
     int out;
+    bool round = false;  // in a sphere of radius `half` instead of the cube
 };
 Mesh sphere_in_cube(const SphereInCube& shape);
 

@@ -1,0 +1,40 @@
+// Flows whose forces are known (flow_known.h). Bounds are what is reached and a tenth; docs/validation.md has
+// the finer meshes, by `make validate`.
+#include "flow_known.h"
+#include "session.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <string>
+
+namespace kropla {
+namespace {
+
+/// One bound [%] for each value.
+void expect_within(const Outcome& outcome, std::initializer_list<double> bounds) {
+    ASSERT_EQ(outcome.reached.size(), bounds.size());
+    const double* bound = bounds.begin();
+    for (const Reached& value : outcome.reached) {
+        testing::Test::RecordProperty(value.what, std::to_string(value.error()));
+        EXPECT_LT(100 * std::abs(value.error()), *bound++)
+            << value.what << ": " << value.value << " for " << value.exact;
+    }
+}
+
+TEST(FlowValidation, SphereInASphere) { expect_within(drag_in_sphere(petsc().all_ranks(), 1), {1.87}); }
+
+TEST(FlowValidation, SphereInACube) { expect_within(drag_in_cube(petsc().all_ranks(), 1), {1.94}); }
+
+// With cells as large as the gap is in the end; and it jumps, as layers are made anew in a gap that narrows.
+TEST(FlowValidation, SphereThatMovesToTheFloor) {
+    expect_within(way_to_floor(petsc().all_ranks(), 1), {1.55, 1.82, 8.23, 1.67, 2.99});
+}
+
+TEST(FlowValidation, SphereThatSwings) {
+    expect_within(swinging_sphere(petsc().all_ranks(), 1), {3.71, 1.31});
+}
+
+}  // namespace
+}  // namespace kropla
