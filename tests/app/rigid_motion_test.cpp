@@ -1,6 +1,5 @@
 // Bodies that go where forces take them, in laws of force that are known in closed form.
-#include "meshes.h"
-#include "../mesh/meshes.h"
+#include "../io/examples.h"
 #include "app/rigid_motion.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +15,8 @@ Weighed ball(double mass, double radius) {
 }
 
 TEST(RigidMotion, ABoxIsWeighed) {
-    const Mesh mesh = cube_grid(2, 2, 2, [](int i, int j, int k) { return Vec3{0.5 * i, 1.0 * j, 1.5 * k}; },
-                                [](int, int, int) { return 0; });
+    Mesh mesh = cube_of_tets(2);
+    for (Vec3& x : mesh.position) x = {x.x, 2 * x.y, 3 * x.z};
     const Weighed box = weighed(mesh, Region(0), 5);
     EXPECT_NEAR(box.mass, 30, 1e-12);
     EXPECT_NEAR(distance(box.centre, {0.5, 1, 1.5}), 0, 1e-13);
