@@ -28,13 +28,16 @@ TEST(OutputDocuments, HaveTheColumnsOfSteps) {
     it.domain.bodies[0].name = "NAME";
     it.heat.emplace();
     it.species = {{.name = "SPECIES", .regions = {}}};
+    it.flow.emplace().options.regions = {FlowRegion{}};
     std::string header = csv_header(step_row(1, {}, {}, {}, it));
-    for (const char* face : {"x_max", "y_min", "y_max", "z_min", "z_max"}) {
-        const std::string column = std::string("heat_out_") + face + " [W],";
-        ASSERT_NE(header.find(column), std::string::npos) << face;
-        header.erase(header.find(column), column.size());
+    for (const auto& [begin, unit] : {std::pair{"heat_out_", " [W],"}, {"volume_out_", " [m^3/s],"}}) {
+        for (const char* face : {"x_max", "y_min", "y_max", "z_min", "z_max"}) {
+            const std::string column = begin + std::string(face) + unit;
+            ASSERT_NE(header.find(column), std::string::npos) << column;
+            header.erase(header.find(column), column.size());
+        }
+        header.replace(header.find("x_min"), 5, "FACE");
     }
-    header.replace(header.find("x_min"), 5, "FACE");
     EXPECT_EQ(documented("steps.csv"), header);
 }
 
