@@ -18,7 +18,7 @@ struct ProgressRow {
     double mesh_seconds = 0;             // of this step
     std::optional<double> heat_seconds;  // of this step; nothing: no heat in the case
     std::optional<double> flow_seconds = {};  // of this step; nothing: no flow, or in the seconds of the heat
-    std::string bodies;  // what they are like, as "droplet 2,391 K" or "sphere 101 mm/s"; empty: nothing to tell
+    std::string bodies;  // "droplet 2,391 K" or "sphere 101 mm/s"; empty: nothing to tell
     double seconds_left = 0;             // of the run, estimated
 };
 
@@ -34,7 +34,7 @@ struct ProgressRow {
 
 /// A count with its thousands apart: "74,364".
 [[nodiscard]] std::string spoken_count(double count);
-/// A quantity [SI] in the unit that suits it, three digits, in letters that any terminal knows: "12.5 mJ", "3 um/s".
+/// A quantity [SI] in the unit that suits it, three digits, in letters that any terminal knows: "3 um/s".
 [[nodiscard]] std::string spoken_quantity(double value, const char* si);
 /// A text in such letters.
 [[nodiscard]] std::string plain(std::string text);

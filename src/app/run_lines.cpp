@@ -47,7 +47,8 @@ std::string heat_of(const BodyResult& body, const RunResults& results) {
     if (results.energy && is_rounding(body.given_off, results.energy->size)) return text;
     const bool conducts_only = !results.energy || is_rounding(results.energy->surfaces, results.energy->size);
     return text + fmt::format(", {} {}{}", body.given_off > 0 ? "gave off" : "took up",
-                              spoken_quantity(std::abs(body.given_off), "J"), conducts_only ? "" : " by conduction");
+                              spoken_quantity(std::abs(body.given_off), "J"),
+                              conducts_only ? "" : " by conduction");
 }
 
 std::string body_line(const BodyResult& body, const RunResults& results) {

@@ -20,8 +20,8 @@ namespace kropla {
 ///     droplet: 2,391 K in the mean (2,400 K at the start), gave off 850 mJ, now at (0.0, 0.0, 3.0) mm
 ///     energy: 56.3 J stored, kept to 2e-14
 ///     see droplet/report.html, or paraview droplet/frames.pvd
-/// and in a flow `sphere: now at (0.0, 0.0, 12.3) mm, going at 95.4 mm/s`. Of many bodies the first two, and how many
-/// there are more. `seconds` is what it took. Throws FileError.
+/// and in a flow `sphere: now at (0.0, 0.0, 12.3) mm, going at 95.4 mm/s`. Of many bodies the first two, and
+/// how many there are more. `seconds` is what it took. Throws FileError.
 [[nodiscard]] std::vector<std::string> closing_lines(const std::filesystem::path& folder, double seconds);
 
 }  // namespace kropla

@@ -18,11 +18,13 @@ std::optional<Vec3> velocity_at(const CutPolygon& polygon, Point2 p, const Array
     const CutCorner& first = polygon.corners[0];
     for (std::size_t i = 2; i < static_cast<std::size_t>(polygon.size); ++i) {
         const CutCorner &second = polygon.corners[i - 1], &third = polygon.corners[i];
-        const double at_first = cross2(p, second.place, third.place), at_second = cross2(p, third.place, first.place),
+        const double at_first = cross2(p, second.place, third.place),
+                     at_second = cross2(p, third.place, first.place),
                      at_third = cross2(p, first.place, second.place);
         const double sum = at_first + at_second + at_third;
         if (std::min({at_first, at_second, at_third}) < 0 || !(sum > 0)) continue;
-        return (at_first / sum) * velocity_at(first, velocity) + (at_second / sum) * velocity_at(second, velocity) +
+        return (at_first / sum) * velocity_at(first, velocity) +
+               (at_second / sum) * velocity_at(second, velocity) +
                (at_third / sum) * velocity_at(third, velocity);
     }
     return {};
@@ -38,7 +40,8 @@ std::vector<Point2> places_around(const CutPolygon& polygon, double spacing) {
     std::vector<Point2> places;
     for (double row = std::ceil(min.y / spacing); row * spacing <= max.y; ++row) {
         const double shift = std::fmod(std::abs(row), 2) == 0 ? 0 : 0.5;
-        for (double column = std::ceil(min.x / spacing - shift); (column + shift) * spacing <= max.x; ++column)
+        for (double column = std::ceil(min.x / spacing - shift); (column + shift) * spacing <= max.x;
+             ++column)
             places.push_back({(column + shift) * spacing, row * spacing});
     }
     return places;
@@ -63,8 +66,9 @@ bool reaches_into(const Arrow& arrow, std::span<const CutPolygon> solids) {
 
 }  // namespace
 
-std::vector<Arrow> arrows(std::span<const CutPolygon> cut, std::span<const CutPolygon> solids, const CutPlane& plane,
-                          const Array<Vertex, Vec3>& velocity, const ArrowOptions& options) {
+std::vector<Arrow> arrows(std::span<const CutPolygon> cut, std::span<const CutPolygon> solids,
+                          const CutPlane& plane, const Array<Vertex, Vec3>& velocity,
+                          const ArrowOptions& options) {
     std::vector<Arrow> all;
     for (const CutPolygon& polygon : cut)
         for (const Point2 place : places_around(polygon, options.spacing)) {
@@ -73,7 +77,8 @@ std::vector<Arrow> arrows(std::span<const CutPolygon> cut, std::span<const CutPo
             const Point2 flow = {dot(*known, plane.right), dot(*known, plane.up)};
             const double speed = std::hypot(flow.x, flow.y);
             if (!(speed > 0)) continue;
-            const Arrow arrow = {place, {flow.x / speed, flow.y / speed}, options.spacing * std::sqrt(speed / options.most)};
+            const Arrow arrow = {
+                place, {flow.x / speed, flow.y / speed}, options.spacing * std::sqrt(speed / options.most)};
             if (!reaches_into(arrow, solids)) all.push_back(arrow);
         }
     return all;

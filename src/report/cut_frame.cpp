@@ -63,7 +63,11 @@ std::vector<CutFrame> read_cuts(const RunFiles& run, const Watch* watch) {
     std::vector<CutFrame> frames;
     for (const SeriesEntry& entry : start_middle_end(run.frames)) {
         heed(watch);
-        CutFrame f{.time = entry.time, .frame = read_vtu(run.dir / entry.file, watch), .spot = {}, .plane = {}, .cut = {}};
+        CutFrame f{.time = entry.time,
+                   .frame = read_vtu(run.dir / entry.file, watch),
+                   .spot = {},
+                   .plane = {},
+                   .cut = {}};
         f.spot = spot_of(f.frame.mesh);
         frames.push_back(std::move(f));
     }

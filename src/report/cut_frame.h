@@ -28,11 +28,12 @@ struct CutFrame {
 
 /// The axis along which the first body moves least; y, unless another is clearly better.
 [[nodiscard]] int axis_across_path(const std::vector<CutFrame>& frames);
-/// Start, middle and end of a run, cut across that axis through the first body's centre. Throws FileError, Interrupted.
+/// Start, middle and end of a run, cut across that axis through the first body's centre. Throws FileError,
+/// Interrupted.
 [[nodiscard]] std::vector<CutFrame> read_cuts(const RunFiles& run, const Watch* watch);
 
-/// The window with all of the cut, or with the first body and what is around it; smaller where there are too many cells
-/// to draw. Coordinates on the cut have their origin at the body's centre.
+/// The window with all of the cut, or with the first body and what is around it; smaller where there are too
+/// many cells to draw. Coordinates on the cut have their origin at the body's centre.
 [[nodiscard]] CutWindow whole(const CutFrame& f);
 [[nodiscard]] CutWindow magnified(const CutFrame& f);
 

@@ -14,9 +14,11 @@ namespace {
 
 constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
-/// The first field of the run, in one range of colours for all frames; empty without fields, or if it is of a flow.
+/// The first field of the run, in one range of colours for all frames; empty without fields, or if it is of a
+/// flow.
 std::string field_rows(const std::vector<CutFrame>& frames, const Watch* watch) {
-    if (frames.front().frame.fields.empty() || frames.front().frame.fields.front().name == pressure_name) return {};
+    if (frames.front().frame.fields.empty() || frames.front().frame.fields.front().name == pressure_name)
+        return {};
     const std::string name = frames.front().frame.fields.front().name,
                       unit = frames.front().frame.fields.front().unit;
     double least = std::numeric_limits<double>::infinity(), most = -least;

@@ -33,7 +33,8 @@ Parted parted(const CutFrame& f) {
     const std::vector<bool> solid = solid_regions(f.frame.mesh, field_named(f, pressure_name)->values);
     Parted parts;
     for (const CutPolygon& polygon : f.cut)
-        (solid[static_cast<std::size_t>(polygon.region.value)] ? parts.solid : parts.flowing).push_back(polygon);
+        (solid[static_cast<std::size_t>(polygon.region.value)] ? parts.solid : parts.flowing)
+            .push_back(polygon);
     return parts;
 }
 
@@ -70,8 +71,10 @@ std::string scale(Shown& all, const char* si) {
     return unit.name;
 }
 
-std::string speed_rows(std::span<const CutFrame> frames, const std::vector<Parted>& parts, const Watch* watch) {
-    Shown speed = shown(frames, parts, [](const CutFrame& f, Vertex v) { return norm((*velocity_of(f))[v]); });
+std::string speed_rows(std::span<const CutFrame> frames, const std::vector<Parted>& parts,
+                       const Watch* watch) {
+    Shown speed =
+        shown(frames, parts, [](const CutFrame& f, Vertex v) { return norm((*velocity_of(f))[v]); });
     speed.least = 0;
     const double most = speed.most;
     const std::string title = "speed [" + scale(speed, "m/s") + "]";
@@ -87,12 +90,12 @@ std::string speed_rows(std::span<const CutFrame> frames, const std::vector<Parte
     return row("S" + title.substr(1) + ", cut", frames, whole, draw) +
            (has_body ? row("S" + title.substr(1) + ", around the first body", frames, magnified, draw) : "") +
            draw_colour_bar(title, colours) +
-           "<p class=\"soft\">Arrows: the velocity within the plane of the cut. Their lengths go with the root of it, so "
-           "that slow flow is seen too.</p>";
+           "<p class=\"soft\">Arrows: the velocity within the plane of the cut. Their lengths go with the "
+           "root of it, so that slow flow is seen too.</p>";
 }
 
-std::string pressure_rows(const RunFiles& run, std::span<const CutFrame> frames, const std::vector<Parted>& parts,
-                          const Watch* watch) {
+std::string pressure_rows(const RunFiles& run, std::span<const CutFrame> frames,
+                          const std::vector<Parted>& parts, const Watch* watch) {
     const Hydrostatic at_rest = hydrostatic(run.case_text);
     Shown pressure = shown(frames, parts, [&](const CutFrame& f, Vertex v) {
         return field_named(f, pressure_name)->values[v] - pressure_at(at_rest, f.frame.mesh.position[v]);
@@ -105,9 +108,10 @@ std::string pressure_rows(const RunFiles& run, std::span<const CutFrame> frames,
         const auto i = static_cast<std::size_t>(&f - frames.data());
         return draw_flow(parts[i].flowing, pressure.values[i], colours, window, parts[i].solid, {});
     };
-    const char* note = is_there(at_rest) ? "<p class=\"soft\">Pressure less that at rest: without what the weight of what "
-                                           "flows makes, measured from half the height of the box.</p>"
-                                         : "";
+    const char* note = is_there(at_rest)
+                           ? "<p class=\"soft\">Pressure less that at rest: without what the weight of what "
+                             "flows makes, measured from half the height of the box.</p>"
+                           : "";
     return row("P" + title.substr(1) + ", cut", frames, whole, draw) + draw_colour_bar(title, colours) + note;
 }
 

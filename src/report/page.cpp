@@ -126,13 +126,14 @@ std::string draw_solver(const Table& steps) {
     };
     const std::string table =
         table_row("td", {"largest Courant number", readable(largest("courant"), 3)}) +
-        table_row("td", {"rounds of a step, until bodies go where the flow takes them", in_step("flow_rounds")}) +
+        table_row("td",
+                  {"rounds of a step, until bodies go where the flow takes them", in_step("flow_rounds")}) +
         table_row("td", {"linear systems of a step, in its last round", in_step("flow_passes")}) +
         table_row("td", {"iterations of the linear solver in these", in_step("flow_iterations")}) +
         table_row("td", {"computing time of the simulation", readable_time(sum("simulate_seconds"))});
     const std::string charts =
-        draw_chart(of.chart("Courant number: heights of a cell crossed in a step, at most", "", Chart::Marks::lines,
-                            {{"Courant number", "courant"}})) +
+        draw_chart(of.chart("Courant number: heights of a cell crossed in a step, at most", "",
+                            Chart::Marks::lines, {{"Courant number", "courant"}})) +
         draw_chart(of.chart("Rounds of a step, and linear systems in the last", "", Chart::Marks::lines,
                             {{"rounds", "flow_rounds"}, {"linear systems", "flow_passes"}})) +
         of.columns("Iterations of the linear solver in a step", "", {{"iterations", "flow_iterations"}});
@@ -154,9 +155,10 @@ std::string draw_tiles(const RunFiles& run, const RunSummary& s) {
            tile("worst aspect ratio R/r" + floor, s.steps > 0 ? readable(s.worst_aspect_ratio, 4) : "–") +
            tile(s.refused == 1 ? "refused attempt" : "refused attempts", readable_count(s.refused)) +
            tile("computing time of the mesh", readable_time(s.mesh_seconds)) +
-           (has_column(run.steps, "energy_integral") || has_column(run.steps, "courant") ? tile("of the simulation", readable_time(s.simulate_seconds)) +
-                                                           tile("of the transfer", readable_time(s.transfer_seconds))
-                                                     : "") +
+           (has_column(run.steps, "energy_integral") || has_column(run.steps, "courant")
+                ? tile("of the simulation", readable_time(s.simulate_seconds)) +
+                      tile("of the transfer", readable_time(s.transfer_seconds))
+                : "") +
            "</div>";
 }
 
@@ -201,9 +203,10 @@ std::string draw_steps(const RunFiles& run, const RunSummary& summary, const Pag
                      "report</code> draws them.</p>",
                      ""};
     if (options.cuts) cuts = draw_cuts(run, options.watch);
-    return draw_results(results_of(run), cuts.field) + draw_solver(run.steps) + "<section><h2>Mesh</h2>" + draw_tiles(run, summary) +
-           draw_charts(run, summary) + '\n' + cuts.mesh + '\n' + draw_sizes(run) + draw_figures(run, summary) +
-           "</section>\n<section><h2>The case</h2><pre>" + escaped(run.case_text) + "</pre></section>\n";
+    return draw_results(results_of(run), cuts.field) + draw_solver(run.steps) + "<section><h2>Mesh</h2>" +
+           draw_tiles(run, summary) + draw_charts(run, summary) + '\n' + cuts.mesh + '\n' + draw_sizes(run) +
+           draw_figures(run, summary) + "</section>\n<section><h2>The case</h2><pre>" +
+           escaped(run.case_text) + "</pre></section>\n";
 }
 
 }  // namespace

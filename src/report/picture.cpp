@@ -112,8 +112,8 @@ void add_in_bands(const std::vector<ValuedPoint>& polygon, double least, double 
 }
 
 /// The bands of a field, a path each.
-std::string field_paths(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, const ColourScale& scale,
-                        const Drawing& drawing) {
+std::string field_paths(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,
+                        const ColourScale& scale, const Drawing& drawing) {
     std::array<std::string, bands> paths;
     for (const CutPolygon& polygon : cut) {
         if (!seen(polygon, drawing.window)) continue;
@@ -139,7 +139,8 @@ void add_arrow(const Drawing& drawing, const Arrow& arrow, std::string& shafts, 
     if (length < least_length) return;
     const Point2 middle = on_drawing(drawing, arrow.place), along = {arrow.direction.x, -arrow.direction.y};
     const auto at = [&](double forth, double aside) {
-        return Point2{middle.x + forth * along.x - aside * along.y, middle.y + forth * along.y + aside * along.x};
+        return Point2{middle.x + forth * along.x - aside * along.y,
+                      middle.y + forth * along.y + aside * along.x};
     };
     shafts += line_path(std::array{at(-length / 2, 0), at(length / 2 - head / 2, 0)});
     heads += polygon_path(
@@ -201,14 +202,15 @@ std::string draw_cells(std::span<const CutPolygon> cut, const CutWindow& window,
     return svg + "</svg>";
 }
 
-std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, const ColourScale& scale,
-                       const CutWindow& window) {
+std::string draw_field(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,
+                       const ColourScale& scale, const CutWindow& window) {
     const Drawing drawing = drawing_of(window);
     return opening(drawing, "picture field") + field_paths(cut, field, scale, drawing) + "</svg>";
 }
 
-std::string draw_flow(std::span<const CutPolygon> cut, const Array<Vertex, double>& field, const ColourScale& scale,
-                      const CutWindow& window, std::span<const CutPolygon> solids, std::span<const Arrow> arrows) {
+std::string draw_flow(std::span<const CutPolygon> cut, const Array<Vertex, double>& field,
+                      const ColourScale& scale, const CutWindow& window, std::span<const CutPolygon> solids,
+                      std::span<const Arrow> arrows) {
     const Drawing drawing = drawing_of(window);
     std::string bodies, shafts, heads;
     for (const CutPolygon& polygon : solids)

@@ -79,7 +79,8 @@ bool add_start(const Table& table, std::vector<BodyResult>& bodies) {
 }
 
 /// What leaves through the faces, by columns that begin so.
-std::vector<FaceResult> faces_of(const Table& steps, const std::string& begin, const std::vector<double>& dt) {
+std::vector<FaceResult> faces_of(const Table& steps, const std::string& begin,
+                                 const std::vector<double>& dt) {
     std::vector<FaceResult> faces;
     for (const char* name : face_names) {
         const std::string column = begin + name;
@@ -125,7 +126,8 @@ std::optional<EnergyBalance> energy_of(const Table& steps, const std::vector<Fac
 /// The mass of what flows, where density and box are numbers of the case.
 std::optional<double> mass_of_flow(const RunFiles& run, const std::vector<BodyResult>& bodies) {
     const auto density = number_of_case(run.case_text, "flow.region.\"surroundings\"", "density");
-    const auto min = vector_of_case(run.case_text, "domain", "min"), max = vector_of_case(run.case_text, "domain", "max");
+    const auto min = vector_of_case(run.case_text, "domain", "min"),
+               max = vector_of_case(run.case_text, "domain", "max");
     if (!density || !min || !max) return {};
     const Vec3 box = *max - *min;
     double volume = box.x * box.y * box.z;
@@ -143,11 +145,13 @@ std::optional<FlowResult> flow_of(const RunFiles& run, const std::vector<BodyRes
                     .iterations = numbers(steps, "flow_iterations"),
                     .rounds = numbers(steps, "flow_rounds"),
                     .mass = mass_of_flow(run, bodies)};
-    for (const FaceResult& face : flow.faces) flow.flux_size = std::max(flow.flux_size, largest_size(face.out));
+    for (const FaceResult& face : flow.faces)
+        flow.flux_size = std::max(flow.flux_size, largest_size(face.out));
     for (const BodyResult& body : bodies)
         flow.flux_size = std::max(flow.flux_size, largest_size(sizes(body.velocity)) *
                                                       std::pow(std::cbrt(std::abs(body.volume.front())), 2));
-    for (const double missed : numbers(steps, "mass_error_surroundings")) flow.mass_missed += std::abs(missed);
+    for (const double missed : numbers(steps, "mass_error_surroundings"))
+        flow.mass_missed += std::abs(missed);
     return flow;
 }
 
@@ -188,7 +192,8 @@ std::vector<double> sizes(const std::vector<Vec3>& vectors) {
 
 bool turns(const BodyResult& body) {
     const double radius = body.volume.empty() ? 0 : 0.5 * std::cbrt(std::abs(body.volume.front()));
-    const double turning = radius * largest_size(sizes(body.spin)), going = largest_size(sizes(body.velocity));
+    const double turning = radius * largest_size(sizes(body.spin)),
+                 going = largest_size(sizes(body.velocity));
     return turning > notable_share * going;
 }
 

@@ -48,12 +48,12 @@ struct EnergyBalance {
 
 /// What is known of a flow as a whole. Vectors have a value per step.
 struct FlowResult {
-    std::vector<FaceResult> faces;                    // all six
-    double flux_size = 0;                             // [m^3/s] the largest that flows: with it faces are compared
-    std::vector<double> courant;                      // [-]
-    std::vector<double> passes, iterations, rounds;   // as in steps.csv
-    double mass_missed = 0;                           // [kg] in all steps, by size
-    std::optional<double> mass = {};                  // [kg] of what flows, at the start; if the case tells its density
+    std::vector<FaceResult> faces;                   // all six
+    double flux_size = 0;  // [m^3/s] the largest that flows: with it faces are compared
+    std::vector<double> courant;                     // [-]
+    std::vector<double> passes, iterations, rounds;  // as in steps.csv
+    double mass_missed = 0;                          // [kg] in all steps, by size
+    std::optional<double> mass = {};  // [kg] of what flows, at the start; if the case tells its density
 };
 
 /// Below this share of what it is compared with, a figure of a run is rounding: single errors are some 1e-16, and add
@@ -62,8 +62,8 @@ inline constexpr double rounding_share = 1e-11;
 /// Is it nothing but rounding, compared with `size`?
 [[nodiscard]] bool is_rounding(double value, double size);
 
-/// Below this share of the vector they belong to, components and spins are what the mesh makes of zero: they are not
-/// shown as results.
+/// Below this share of the vector they belong to, components and spins are what the mesh makes of zero: they
+/// are not shown as results.
 inline constexpr double notable_share = 0.02;
 /// The axes along which vectors of a run have more than that of their largest.
 [[nodiscard]] std::vector<int> notable_axes(const std::vector<Vec3>& vectors);

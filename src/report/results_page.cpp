@@ -83,8 +83,9 @@ std::string draw_bodies(const RunResults& results) {
             cells.insert(cells.end(), {with_unit(body.given_off, "J"), with_unit(most_by_size(body.heat_from), "W")});
         else if (warm) cells.insert(cells.end(), {nothing, nothing});
         const double size = length_scale(body);
-        cells.insert(cells.end(), {place_with_unit(body.start_place, size), place_with_unit(body.place.back(), size),
-                                   moves(body) ? with_unit(norm(body.velocity.back()), "m/s", 3) : "at rest"});
+        cells.insert(cells.end(),
+                     {place_with_unit(body.start_place, size), place_with_unit(body.place.back(), size),
+                      moves(body) ? with_unit(norm(body.velocity.back()), "m/s", 3) : "at rest"});
         if (in_a_flow) std::ranges::copy(flow_cells(body), std::back_inserter(cells));
         cells.push_back(volume(body));
         html += table_row("td", cells);
@@ -93,9 +94,10 @@ std::string draw_bodies(const RunResults& results) {
                                "surroundings; negative: into the body. What the surface itself sets free or radiates "
                                "is not in it.</p>"
                              : "";
-    const char* force = in_a_flow ? "<p class=\"soft\">Force of the flow: of pressure, with buoyancy, and of friction; "
-                                    "without the weight. Speeds are means over a step.</p>"
-                                  : "";
+    const char* force =
+        in_a_flow ? "<p class=\"soft\">Force of the flow: of pressure, with buoyancy, and of friction; "
+                    "without the weight. Speeds are means over a step.</p>"
+                  : "";
     const char* first =
         results.start_known ? "" : "<p class=\"soft\">For the start stands the end of the first step.</p>";
     return html + "</table></div>" + taken + force + first;
@@ -147,7 +149,8 @@ std::string draw_through_flow(const RunResults& results) {
     }
     if (rows.empty()) return {};
     return "<h3>Flow through faces of the box</h3><table>" +
-           table_row("th", {"face", "volume that leaves, at the end", "in all (negative: comes in)"}) + rows + "</table>";
+           table_row("th", {"face", "volume that leaves, at the end", "in all (negative: comes in)"}) + rows +
+           "</table>";
 }
 
 /// Of what flows, what is missed; in a sound run nothing but rounding.
@@ -157,7 +160,8 @@ std::string draw_mass(const RunResults& results) {
     std::string missed = with_unit(flow.mass_missed, "kg", 2);
     if (flow.mass && *flow.mass > 0) {
         const double share = flow.mass_missed / *flow.mass;
-        missed = (is_rounding(share, 1) ? "none but rounding" : missed) + ", " + readable(share, 1) + " of the mass";
+        missed = (is_rounding(share, 1) ? "none but rounding" : missed) + ", " + readable(share, 1) +
+                 " of the mass";
     }
     return "<h3>Mass of what flows</h3><table>" +
            (flow.mass ? table_row("td", {"in the box, at the start", with_unit(*flow.mass, "kg")}) : "") +
@@ -279,15 +283,15 @@ std::vector<Series> components(const std::vector<Vec3>& vectors) {
 }
 
 /// "Force on ball along z" and its line, or one for each axis that counts.
-std::string draw_components(const RunResults& results, const std::string& what, const char* around, const char* si,
-                            const std::vector<Vec3>& vectors) {
+std::string draw_components(const RunResults& results, const std::string& what, const char* around,
+                            const char* si, const std::vector<Vec3>& vectors) {
     std::vector<Series> axes = components(vectors);
     const std::string along = axes.size() == 1 ? around + axes.front().name : "";
     return draw(results, what + along, si, std::move(axes));
 }
 
-/// What the flow does to bodies: of a few their velocity, where it is not along one axis, force and spin; of many the
-/// sizes.
+/// What the flow does to bodies: of a few their velocity, where it is not along one axis, force and spin; of
+/// many the sizes.
 std::string draw_flow_around_bodies(const RunResults& results) {
     const auto around = bodies_that(results, [](const BodyResult& body) { return !body.force.empty(); });
     const auto turning = bodies_that(results, [](const BodyResult& body) { return turns(body); });
@@ -301,7 +305,8 @@ std::string draw_flow_around_bodies(const RunResults& results) {
         if (moves(*body) && notable_axes(body->velocity).size() > 1)
             html += draw_components(results, "Velocity of " + body->name, " along ", "m/s", body->velocity);
         html += draw_components(results, "Force of the flow on " + body->name, " along ", "N", body->force);
-        if (turns(*body)) html += draw_components(results, "Spin of " + body->name, " about ", "rad/s", body->spin);
+        if (turns(*body))
+            html += draw_components(results, "Spin of " + body->name, " about ", "rad/s", body->spin);
     }
     return html;
 }
@@ -311,7 +316,8 @@ std::string draw_flow_through_faces(const RunResults& results) {
     if (results.flow)
         for (const FaceResult& face : results.flow->faces)
             if (flows_through(*results.flow, face)) faces.push_back({spoken_face(face.name), face.out});
-    const std::string through = faces.size() == 1 ? "Flow out through " + faces.front().name : "Flow out through faces";
+    const std::string through =
+        faces.size() == 1 ? "Flow out through " + faces.front().name : "Flow out through faces";
     return draw(results, through, "m^3/s", std::move(faces));
 }
 
@@ -338,9 +344,11 @@ std::string draw_results(const RunResults& results, const std::string& pictures)
                                draw_displacements(results) + draw_speeds(results) +
                                draw_flow_around_bodies(results) + draw_flow_through_faces(results);
     const std::string content =
-        draw_bodies(results) + draw_faces(results) + draw_through_flow(results) + draw_energy(results) + draw_mass(results) +
-        (charts.empty() ? "" : "<h3>Over time</h3>" + not_all_lines(results.bodies.size(), "bodies") + left_out(results) +
-                                   "<div class=\"charts\">" + charts + "</div>") +
+        draw_bodies(results) + draw_faces(results) + draw_through_flow(results) + draw_energy(results) +
+        draw_mass(results) +
+        (charts.empty() ? ""
+                        : "<h3>Over time</h3>" + not_all_lines(results.bodies.size(), "bodies") +
+                              left_out(results) + "<div class=\"charts\">" + charts + "</div>") +
         pictures;
     return content.empty() ? "" : "<section><h2>Results</h2>" + content + "</section>\n";
 }

@@ -51,7 +51,8 @@ std::optional<Vec3> read_vector(std::string_view text) {
 }
 
 /// What stands as `key` in the table `[section]` of a case as run, without blanks.
-std::optional<std::string> text_of_case(std::string_view case_text, std::string_view section, std::string_view key) {
+std::optional<std::string> text_of_case(std::string_view case_text, std::string_view section,
+                                        std::string_view key) {
     const std::string header = '[' + std::string(section) + ']';
     std::string wanted = std::string(key) + '=';
     std::erase(wanted, '_');
@@ -113,7 +114,8 @@ std::optional<double> number_of_case(std::string_view case_text, std::string_vie
     return error == std::errc() && stop == last ? std::optional(value) : std::nullopt;
 }
 
-std::optional<Vec3> vector_of_case(std::string_view case_text, std::string_view section, std::string_view key) {
+std::optional<Vec3> vector_of_case(std::string_view case_text, std::string_view section,
+                                   std::string_view key) {
     const std::optional<std::string> text = text_of_case(case_text, section, key);
     return text ? read_vector(*text) : std::nullopt;
 }

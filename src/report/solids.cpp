@@ -17,7 +17,8 @@ Array<Vertex, int> regions_at_vertices(const Mesh& mesh) {
         at = at == none || at == region.value ? region.value : several;
     };
     for (const Tet t : mesh.tets.indices())
-        for (std::size_t corner = 0; corner < 4 && alive(mesh, t); ++corner) note(mesh.tets[t][corner], mesh.region[t]);
+        for (std::size_t corner = 0; corner < 4 && alive(mesh, t); ++corner)
+            note(mesh.tets[t][corner], mesh.region[t]);
     for (const Prism& prism : all_prisms(mesh))
         for (const Vertex v : prism_vertices(mesh, prism)) note(v, layer_of(mesh, prism.layer).region);
     return region_at;
@@ -27,7 +28,8 @@ int largest_region(const Mesh& mesh) {
     int most = 0;
     for (const Tet t : mesh.tets.indices())
         if (alive(mesh, t)) most = std::max(most, mesh.region[t].value);
-    for (const Prism& prism : all_prisms(mesh)) most = std::max(most, layer_of(mesh, prism.layer).region.value);
+    for (const Prism& prism : all_prisms(mesh))
+        most = std::max(most, layer_of(mesh, prism.layer).region.value);
     return most;
 }
 

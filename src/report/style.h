@@ -62,7 +62,8 @@ path.limit { stroke: var(--limit); stroke-width: 1.6; stroke-dasharray: 6 4; }
   stroke-linejoin: round; }
 .mark { fill: none; stroke: var(--limit); stroke-width: 2.5; }
 .field path { stroke-width: .5; stroke-linejoin: round; }
-.field .outline { fill: none; stroke: #141c26; stroke-width: 2.6; } .field .solid { fill: #9aa3ad; stroke: #9aa3ad; }
+.field .outline { fill: none; stroke: #141c26; stroke-width: 2.6; }
+.field .solid { fill: #9aa3ad; stroke: #9aa3ad; }
 .field .shaft { fill: none; stroke: #141c26; stroke-width: .9; } .field .head { fill: #141c26; stroke: none; }
  .bar { max-width: 520px; margin-top: 8px; }
 .r0 { fill: var(--r0); } .r1 { fill: var(--r1); } .r2 { fill: var(--r2); } .r3 { fill: var(--r3); }

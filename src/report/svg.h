@@ -29,8 +29,8 @@ namespace kropla {
 /// A colour of the map "inferno", black over red to light yellow and even to the eye, at 0 ... 1: "#cf4446".
 /// By van der Walt and Smith for matplotlib (CC0), linear between ten of its colours.
 [[nodiscard]] std::string inferno(double fraction);
-/// A map of light colours, yellow over green to blue, on which dark arrows are seen: seven of the nine colours "YlGnBu" of
-/// ColorBrewer (Brewer, Harrower; Apache License 2.0).
+/// A map of light colours, yellow over green to blue, on which dark arrows are seen: seven of the nine
+/// colours "YlGnBu" of ColorBrewer (Brewer, Harrower; Apache License 2.0).
 [[nodiscard]] std::string light_blues(double fraction);
 /// A map for what has a sign, blue over white at 0.5 to red: "RdBu" of ColorBrewer, turned over.
 [[nodiscard]] std::string blue_to_red(double fraction);

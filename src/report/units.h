@@ -11,8 +11,9 @@ struct ScaledUnit {
     double scale = 1;  // value [SI] * scale = value in this unit
     std::string name;  // "mW", "µm", "mm³"
 };
-/// The unit in which a quantity of this size reads well, between 1 and 1000 (speeds 0.1 and 100) where there is such a
-/// one. `si` is as columns have it: "m", "m/s", "m^3", "m^3/s", "J", "W", "N", "Pa", "s". Others, as "K" and "", stay as they are.
+/// The unit in which a quantity of this size reads well, between 1 and 1000 (speeds 0.1 and 100) where there
+/// is such a one. `si` is as columns have it: "m", "m/s", "m^3", "m^3/s", "J", "W", "N", "Pa", "s". Others,
+/// as "K" and "", stay as they are.
 [[nodiscard]] ScaledUnit unit_for(double size, const std::string& si);
 
 /// A value in the unit that suits it: "12.5 mW", "0 J".

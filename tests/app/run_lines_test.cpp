@@ -38,7 +38,8 @@ TEST(ClosingLines, SayInAFlowHowFastABodyGoes) {
     const TemporaryFolder folder;
     std::string names = body_names("a");
     for (const char* axis : {"x", "y", "z"})
-        for (const char* quantity : {"spin", "force"}) names += std::string(",") + quantity + "_" + axis + "_a [N]";
+        for (const char* quantity : {"spin", "force"})
+            names += std::string(",") + quantity + "_" + axis + "_a [N]";
     write_run(folder, names, ",0,0,0.0123,0,0,-0.0954,1e-6,0,0,0,0,0,0");
     write(folder.path / "bodies.csv", "body,name,x [m],y [m],z [m]\n1,ball,0,0,0.1275\n");
     EXPECT_EQ(closing_lines(folder.path, 75)[1], "ball: now at (0, 0, 12) mm, going at 95.4 mm/s");

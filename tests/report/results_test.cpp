@@ -85,7 +85,8 @@ TEST(ResultsPage, ShowsWhatThereIsAndNothingElse) {
     EXPECT_FALSE(has(html, "<td>x min</td>"));
 }
 
-/// A body that falls by 1 m in the flow that it makes, in a box that some of it leaves; noise along x and in its spin.
+/// A body that falls by 1 m in the flow that it makes, in a box that some of it leaves; noise along x and in
+/// its spin.
 constexpr const char* flow_text =
     "step,time [s],dt [s],x_a [m],y_a [m],z_a [m],u_a [m/s],v_a [m/s],w_a [m/s],volume_a [m^3],area_a [m^2],"
     "spin_x_a [rad/s],spin_y_a [rad/s],spin_z_a [rad/s],force_x_a [N],force_y_a [N],force_z_a [N],"
@@ -97,7 +98,8 @@ constexpr const char* flow_text =
 
 RunFiles flow_files(const std::string& steps) {
     RunFiles run = files(steps, "body,name,x [m],y [m],z [m]\n1,a,0,0,5\n");
-    run.case_text = "[domain]\nmin = [0, 0, 0]\nmax = [2, 2, 4]\n[flow.region.\"surroundings\"]\ndensity = 1.5\n";
+    run.case_text =
+        "[domain]\nmin = [0, 0, 0]\nmax = [2, 2, 4]\n[flow.region.\"surroundings\"]\ndensity = 1.5\n";
     return run;
 }
 
@@ -120,11 +122,13 @@ TEST(Results, TellOfAFlow) {
 
 TEST(ResultsPage, ShowsAFlowWithoutItsNoise) {
     const std::string html = draw_results(results_of(flow_files(flow_text)), "");
-    for (const char* part : {"<td>0.25 m/s</td><td>0.5 m/s</td><td>30 mN</td><td>30 mN</td><td>8 m³</td>",
-                             "<td>z max</td><td>0.5 m³/s</td><td>1 m³</td>", "Force of the flow on a along z [mN]",
-                             "Flow out through z max", "none but rounding, 2e-16 of the mass"})
+    for (const char* part :
+         {"<td>0.25 m/s</td><td>0.5 m/s</td><td>30 mN</td><td>30 mN</td><td>8 m³</td>",
+          "<td>z max</td><td>0.5 m³/s</td><td>1 m³</td>", "Force of the flow on a along z [mN]",
+          "Flow out through z max", "none but rounding, 2e-16 of the mass"})
         EXPECT_TRUE(has(html, part)) << part << "\n" << html;
-    for (const char* part : {"x min", "Spin", "Velocity of a", "along x"}) EXPECT_FALSE(has(html, part)) << part;
+    for (const char* part : {"x min", "Spin", "Velocity of a", "along x"})
+        EXPECT_FALSE(has(html, part)) << part;
     std::string turning = flow_text;
     for (std::size_t at; (at = turning.find("1e-3")) != std::string::npos;) turning.replace(at, 4, "0.25");
     EXPECT_TRUE(has(draw_results(results_of(flow_files(turning)), ""), "Spin of a about x [rad/s]"));

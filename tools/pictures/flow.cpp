@@ -72,7 +72,8 @@ std::vector<FlowFrame> read_flow_frames(const std::filesystem::path& dir) {
         const auto pressure = std::ranges::find(f.frame.fields, "pressure", &NodalField::name);
         const auto velocity = std::ranges::find(f.frame.vectors, "velocity", &NodalVectorField::name);
         if (pressure == f.frame.fields.end() || velocity == f.frame.vectors.end()) continue;
-        if (std::ranges::all_of(velocity->values, [](const Vec3& u) { return squared_norm(u) == 0; })) continue;
+        if (std::ranges::all_of(velocity->values, [](const Vec3& u) { return squared_norm(u) == 0; }))
+            continue;
         f.solid = solid_regions(f.frame.mesh, pressure->values);
         f.whole = section(f.run.grid, f.run.centre.y);
         f.flowing = part(f.whole, f.solid, false);
@@ -82,7 +83,8 @@ std::vector<FlowFrame> read_flow_frames(const std::filesystem::path& dir) {
     return frames;
 }
 
-/// Gives the points of what flows the array `shown`, in the unit that suits all frames. Returns its range and the unit.
+/// Gives the points of what flows the array `shown`, in the unit that suits all frames. Returns its range and
+/// the unit.
 template <class Value>
 std::pair<ColourScale, std::string> show(const std::vector<FlowFrame>& frames, const char* si, Value value) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -99,7 +101,8 @@ std::pair<ColourScale, std::string> show(const std::vector<FlowFrame>& frames, c
     }
     const ScaledUnit unit = unit_for(std::max(std::abs(least), std::abs(most)), si);
     for (const auto& array : arrays)
-        for (vtkIdType p = 0; p < array->GetNumberOfTuples(); ++p) array->SetValue(p, array->GetValue(p) * unit.scale);
+        for (vtkIdType p = 0; p < array->GetNumberOfTuples(); ++p)
+            array->SetValue(p, array->GetValue(p) * unit.scale);
     if (!(least < most)) most = least + std::max(1e-6 * std::abs(least), 1e-12);
     return {{least * unit.scale, most * unit.scale}, unit.name};
 }
@@ -109,7 +112,8 @@ std::vector<Arrow> arrows_of(const FlowFrame& f, const CutPlane& plane, double m
     for (const CutPolygon& polygon : cut_mesh(f.frame.mesh, plane))
         (f.solid[static_cast<std::size_t>(polygon.region.value)] ? bodies : flowing).push_back(polygon);
     const double spacing = (f.run.max.x - f.run.min.x) / arrows_across;
-    std::vector<Arrow> all = arrows(flowing, bodies, plane, velocity_of(f), {.spacing = spacing, .most = most});
+    std::vector<Arrow> all =
+        arrows(flowing, bodies, plane, velocity_of(f), {.spacing = spacing, .most = most});
     std::erase_if(all, [&](const Arrow& arrow) { return arrow.length < least_arrow * spacing; });
     return all;
 }
@@ -156,7 +160,8 @@ void draw_flow(const std::filesystem::path& run, const std::filesystem::path& ve
     const Hydrostatic at_rest = hydrostatic(std::filesystem::exists(case_file) ? read_file(case_file) : "");
     auto [pressures, pressure_unit] = show(frames, "Pa", [&](vtkPolyData* cut, vtkIdType p) {
         const double* x = cut->GetPoint(p);
-        return cut->GetPointData()->GetArray("pressure")->GetTuple1(p) - pressure_at(at_rest, {x[0], x[1], x[2]});
+        return cut->GetPointData()->GetArray("pressure")->GetTuple1(p) -
+               pressure_at(at_rest, {x[0], x[1], x[2]});
     });
     draw(frames, pressure_file, signed_scale(pressures.least, pressures.most),
          {"p [" + pressure_unit + "]", is_there(at_rest) ? "less that at rest" : ""}, 0);

@@ -184,7 +184,8 @@ vtkSmartPointer<vtkActor> drawn_arrows(std::span<const Arrow> arrows, const CutP
         }
     };
     for (const Arrow& arrow : arrows) {
-        const double half = arrow.length / 2, head = std::min(5 * thickness, 0.6 * arrow.length), neck = half - head;
+        const double half = arrow.length / 2, head = std::min(5 * thickness, 0.6 * arrow.length),
+                     neck = half - head;
         const double thin = std::min(thickness / 2, 0.15 * head), wide = 0.4 * head;
         add(arrow, {{-half, -thin}, {neck, -thin}, {neck, thin}, {-half, thin}});
         add(arrow, {{neck, -wide}, {half, 0}, {neck, wide}});
@@ -243,7 +244,8 @@ vtkSmartPointer<vtkScalarsToColors> colours_of(const ColourScale& scale) {
     auto colours = vtkSmartPointer<vtkColorTransferFunction>::New();
     for (int i = 0; i <= steps; ++i) {
         const double fraction = static_cast<double>(i) / steps;
-        const auto rgb = static_cast<std::uint32_t>(std::stoul(scale.colour(fraction).substr(1), nullptr, 16));
+        const auto rgb =
+            static_cast<std::uint32_t>(std::stoul(scale.colour(fraction).substr(1), nullptr, 16));
         const auto [r, g, b] = unpacked(rgb);
         colours->AddRGBPoint(scale.least + fraction * (scale.most - scale.least), r, g, b);
     }
