@@ -15,8 +15,8 @@ Weighed ball(double mass, double radius) {
 }
 
 TEST(RigidMotion, ABoxIsWeighed) {
-    Mesh mesh = cube_of_tets(2);
-    for (Vec3& x : mesh.position) x = {x.x, 2 * x.y, 3 * x.z};
+    Mesh mesh = cube_of_tets(2);  // of 2 mm
+    for (Vec3& x : mesh.position) x = {500 * x.x, 1000 * x.y, 1500 * x.z};
     const Weighed box = weighed(mesh, Region(0), 5);
     EXPECT_NEAR(box.mass, 30, 1e-12);
     EXPECT_NEAR(distance(box.centre, {0.5, 1, 1.5}), 0, 1e-13);
