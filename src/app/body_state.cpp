@@ -12,8 +12,7 @@ namespace {
 
 double area_of(const Mesh& mesh, Region region) {
     double area = 0;
-    for (const auto& [a, b, c] : region_surface(mesh, region).interface)
-        area += norm(cross(mesh.position[b] - mesh.position[a], mesh.position[c] - mesh.position[a])) / 2;
+    for (const auto& facet : region_surface(mesh, region).interface) area += norm(area_vector(mesh, facet));
     return area;
 }
 

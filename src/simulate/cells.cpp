@@ -59,9 +59,9 @@ std::size_t count_regions(const Mesh& mesh) {
     return static_cast<std::size_t>(last.value + 1);
 }
 
-FaceFacets facets_of_faces(const Mesh& mesh, Region only) {
+FaceFacets facets_of_faces(const Mesh& mesh, const Cells& cells) {
     FaceFacets facets;
-    for (Tet t : living_cells(mesh, only).tets) {
+    for (Tet t : cells.tets) {
         for (std::size_t corner = 0; corner < 4; ++corner) {
             const Patch patch = mesh.patch[t][corner];
             if (!patch.exists() || mesh.neighbour[t][corner].exists()) continue;

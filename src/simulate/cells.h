@@ -52,9 +52,9 @@ struct RegionSurface {
 };
 [[nodiscard]] RegionSurface region_surface(const Mesh& mesh, Region region);
 
-/// The facets of cells (of a region, if one is named) on each face of the box, with their normal (right hand) out of it.
+/// The facets of cells on each face of the box, with their normal (right hand) out of it.
 using FaceFacets = std::array<std::vector<std::array<Vertex, 3>>, 6>;
-[[nodiscard]] FaceFacets facets_of_faces(const Mesh& mesh, Region only = {});
+[[nodiscard]] FaceFacets facets_of_faces(const Mesh& mesh, const Cells& cells);
 
 /// The integral of the normal over a facet [m^2].
 [[nodiscard]] inline Vec3 area_vector(const Mesh& mesh, const std::array<Vertex, 3>& facet) {

@@ -157,15 +157,7 @@ Cells flow_cells(const Mesh& mesh, const FlowOptions& options) {
 
 FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t) {
     FlowBoundary boundary;
-    for (Tet tet : flow_cells(mesh, options).tets)
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Patch patch = mesh.patch[tet][corner];
-            if (!patch.exists() || patch.value >= box_faces) continue;
-            std::array<Vertex, 3> facet;
-            for (std::size_t k = 0; k < 3; ++k)
-                facet[k] = mesh.tets[tet][static_cast<std::size_t>(tet_facets[corner][k])];
-            boundary.faces[static_cast<std::size_t>(patch.value)].push_back(facet);
-        }
+    boundary.faces = facets_of_faces(mesh, flow_cells(mesh, options));
     for (std::size_t r = 1; r < options.regions.size(); ++r) {
         const Region body(r);
         if (is_fluid(options, body)) continue;

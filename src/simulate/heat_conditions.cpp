@@ -165,7 +165,7 @@ HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const He
         for (Vertex v : shares_of_region(current, Region(r)).vertices)
             fix(v, *options.regions[r].held, {Origin::Kind::held, r});
     }
-    const auto facets = facets_of_faces(current);
+    const auto facets = facets_of_faces(current, living_cells(current));
     for (std::size_t f = 0; f < options.faces.size(); ++f) {
         const HeatFace& face = options.faces[f];
         if (face.kind == HeatFace::Kind::insulated) continue;

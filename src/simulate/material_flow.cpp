@@ -52,8 +52,9 @@ Array<Vertex, double> shares_of_volume(const Mesh& mesh, const Cells& cells) {
 }
 
 /// Lists what passes the faces of the box, from a region.
-void add_through(const Mesh& mesh, Region region, const Array<Vertex, Vec3>& velocity, MaterialFlow& flow) {
-    const auto facets = facets_of_faces(mesh, region);
+void add_through(const Mesh& mesh, Region region, const Cells& cells, const Array<Vertex, Vec3>& velocity,
+                 MaterialFlow& flow) {
+    const FaceFacets facets = facets_of_faces(mesh, cells);
     for (std::size_t face = 0; face < facets.size(); ++face) {
         Array<Vertex, double> rate(mesh.position.size(), 0.0);
         for (const auto& facet : facets[face]) {
@@ -138,7 +139,7 @@ MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& c
         Array<Vertex, double> source = swept_by_boundary(step, region);
         const Cells cells = living_cells(current, region);
         if (!velocity.empty()) {
-            add_through(current, region, velocity, flow);
+            add_through(current, region, cells, velocity, flow);
             for (const auto& [v, of, face, rate] : flow.through)
                 if (of == region) source[v] += rate;
             take_divergence(current, cells, velocity, source);

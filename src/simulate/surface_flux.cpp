@@ -21,11 +21,9 @@ struct BodySurface {
 BodySurface surface_of(const Mesh& mesh, Region body) {
     BodySurface surface{{}, Array<Vertex, double>(mesh.position.size(), 0.0)};
     for (const auto& facet : region_surface(mesh, body).interface) {
-        const Vec3 a = mesh.position[facet[1]] - mesh.position[facet[0]],
-                   b = mesh.position[facet[2]] - mesh.position[facet[0]];
         for (Vertex v : facet) {
             if (surface.area[v] == 0) surface.vertices.push_back(v);
-            surface.area[v] += norm(cross(a, b)) / 6;
+            surface.area[v] += norm(area_vector(mesh, facet)) / 3;
         }
     }
     std::ranges::sort(surface.vertices);
