@@ -43,10 +43,18 @@ std::vector<Tet> cells_at_inner_shells(const Mesh& mesh) {
 }
 
 /// Of those of the cells that are alive.
-double worst_aspect_ratio_of(const Mesh& mesh, std::span<const Tet> cells) {
+/// Of the cells that are new, and of those with a vertex that was moved.
+double worst_aspect_ratio_of(const Mesh& mesh, const Changes& changes) {
     double worst = 0;
-    for (Tet t : cells)
+    const auto look_at = [&](Tet t) {
         if (alive(mesh, t)) worst = std::max(worst, aspect_ratio(mesh, t));
+    };
+    for (Tet t : changes.cells) look_at(t);
+    if (changes.vertices.empty()) return worst;
+    Array<Vertex, char> is_changed(mesh.position.size(), 0);
+    for (Vertex v : changes.vertices) is_changed[v] = 1;
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t) && std::ranges::any_of(mesh.tets[t], [&](Vertex v) { return is_changed[v] != 0; })) look_at(t);
     return worst;
 }
 
@@ -362,7 +370,7 @@ const Changes& MeshStep::remesh() {
     copy_changed(before_, current_, {}, moved_);
     Changes& changes = statistics_.remeshed;
     changes = options_.paper ? remesh_by_paper() : remesh_by_size(options_);
-    if (!options_.paper && worst_aspect_ratio_of(current_, changes.cells) > options_.floor) {
+    if (!options_.paper && worst_aspect_ratio_of(current_, changes) > options_.floor) {
         // What passed the floor on its way stayed there: taken back, and done again without passing it.
         statistics_.redone = true;
         note_replaced(changes);
