@@ -74,12 +74,11 @@ void add_energy(const StepReport& report, const HeatOptions& heat, StepRow& row)
 }
 
 /// What passes the faces, and how the flow was solved for.
-void add_flow(const StepReport& report, const FlowPlan& plan, StepRow& row) {
+void add_flow(const StepReport& report, StepRow& row) {
     const FlowReport& flow = report.flow;
     for (std::size_t face = 0; face < face_keys.size(); ++face)
         row.push_back({fmt::format("volume_out_{} [m^3/s]", face_keys[face]), flow.face_flux[face]});
-    const double density = plan.options.regions[0]->density(0);
-    row.insert(row.end(), {{"mass_error_surroundings [kg]", flow.net_flux * density * report.mesh.dt},
+    row.insert(row.end(), {{"mass_error_surroundings [kg]", flow.mass_error},
                            {"courant", flow.largest_courant},
                            {"flow_passes", static_cast<double>(flow.passes)},
                            {"flow_iterations", static_cast<double>(flow.iterations)},
@@ -138,7 +137,7 @@ StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, 
     add_bodies(report, it, row);
     if (it.heat) add_energy(report, *it.heat, row);
     add_species(report, it, row);
-    if (it.flow) add_flow(report, *it.flow, row);
+    if (it.flow) add_flow(report, row);
     return row;
 }
 

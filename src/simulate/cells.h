@@ -45,6 +45,13 @@ template <std::size_t n, class T>
     return at;
 }
 
+template <std::size_t n>
+[[nodiscard]] double mean_of(const std::array<double, n>& values) {
+    double sum = 0;
+    for (double value : values) sum += value;
+    return sum / static_cast<double>(n);
+}
+
 /// Where a region ends: triangles with their normal (right hand) out of it. Quads of prisms lie between two.
 struct RegionSurface {
     std::vector<std::array<Vertex, 3>> interface;  // to cells of another region

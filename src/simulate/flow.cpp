@@ -4,6 +4,7 @@
 #include <kropla/base/error.h>
 #include "simulate/cells.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -24,15 +25,21 @@ void check_positive(const Property& property, const std::string& key) {
 }  // namespace
 
 void check_flow(const FlowOptions& options, const Mesh& mesh) {
-    bool any = false;
+    int flowing = 0;
+    std::string expands;  // the key of a density of the temperature
     for (std::size_t r = 0; r < options.regions.size(); ++r) {
         if (!options.regions[r]) continue;
         const std::string key = options.key + ".region." + std::to_string(r);
         check_positive(options.regions[r]->density, key + ".density");
         check_positive(options.regions[r]->viscosity, key + ".viscosity");
-        any = true;
+        ++flowing;
+        if (!options.regions[r]->density.constant()) expands = key + ".density";
     }
-    if (!any) throw CaseError(options.key + ".region: no region is a liquid or gas");
+    if (flowing == 0) throw CaseError(options.key + ".region: no region is a liquid or gas");
+    if (!expands.empty() && flowing > 1)
+        throw CaseError(expands + " must be a number where more than one region flows");
+    if (!expands.empty() && std::ranges::none_of(options.faces, [](const FlowFace& face) { return face.kind == FlowFace::Kind::open; }))
+        throw CaseError(expands + " depends on the temperature, and what expands has no way out: open a face");
     if (!is_finite(options.gravity)) throw CaseError(options.key + ".gravity must be finite");
     if (!(options.tolerance > 0 && options.tolerance < 1))
         throw CaseError(options.key + ".tolerance must be between 0 and 1, got " +

@@ -21,6 +21,14 @@ namespace kropla {
 // and the stabilisation's times are of one region each; at interfaces of liquids and gases velocity and
 // pressure are continuous.
 //
+// A gas whose density depends on the temperature expands where it is heated, at the pressure that is around: slowly
+// against sound, which is left out. In place of div u = 0 comes
+//     d rho/dt + div(rho u) = 0,    in weak form  dm_i/dt - integral(rho (u - w).grad phi_i) + what passes faces = 0,
+// m_i = integral(rho phi_i) the mass of a vertex (flow_mass.h). What all vertices gain in a step is what came in through
+// faces. In a step the density changes evenly, so that the velocity this makes is of first order in time. The viscous
+// stress of div u is left to the pressure, which then is not the one of thermodynamics by that much.
+//   [Rehm, Baum 1978] The equations of motion for thermally driven, buoyant flows. J. Res. Nat. Bur. Stand. 83.
+//
 // As the mesh moves and is remade from step to step, nothing but the state at the step's begin is used: a
 // step of the second order is two stages of the method SDIRK2, gamma = 1 - 1/sqrt 2, which is L-stable and
 // ends at its last stage,
@@ -36,7 +44,7 @@ namespace kropla {
 using VectorQuantity = std::array<Quantity, 3>;
 
 struct FlowRegion {
-    Property density = 1;    // [kg/m^3]
+    Property density = 1;    // [kg/m^3] of the temperature only if nothing else flows
     Property viscosity = 1;  // [Pa s]
     VectorQuantity force = {};  // [N/m^3]
 };
@@ -83,6 +91,9 @@ struct FlowOptions {
 struct FlowState {
     Array<Vertex, Vec3> velocity;    // [m/s]; zero in solid bodies, but for their surface
     Array<Vertex, double> pressure;  // [Pa]; zero in them
+    // [kg/m^3] where it depends on the temperature: what is there, and not what the temperature would make of it, so that
+    // mass is kept from step to step. Empty at a start: the temperature's at the step's end.
+    Array<Vertex, double> density = {};
 };
 
 /// What a flow does to a solid body: consistent, the residual of the momentum rows at the body's surface.
@@ -94,6 +105,13 @@ struct BodyForce {
     double flux = 0;   // [m^3/s] that its surface takes in, with the velocities there
 };
 
+/// What passes a face of the box at a vertex.
+struct FaceMass {
+    Vertex vertex;
+    std::size_t face;
+    double rate;  // [kg/s] out of the box, in the mean over the step
+};
+
 struct FlowReport {
     int iterations = 0;  // of the linear solver
     int passes = 0;      // of Newton's method, of all stages
@@ -103,12 +121,15 @@ struct FlowReport {
     // [N] on each face; nothing where it is open. Where faces meet, what acts on vertices is of the face
     // across that direction, else of both: of shear a share of the cells' size goes to faces beside.
     std::array<Vec3, 6> face_force = {};
-    double net_flux = 0;  // [m^3/s] out of everything: zero but for the shape of what is given, by facets
+    double net_flux = 0;  // [m^3/s] out of everything: zero but for the shape of what is given, by facets; or what expands
+    std::vector<FaceMass> through = {};  // where the density depends on the temperature
+    double mass_error = 0;  // [kg] gained in the step, and not through faces; zero but for the solution
     double largest_courant = 0;  // [-] heights of a cell that the flow crosses in the step
 };
 
 /// Throws CaseError, naming the key below `flow`, if a density or viscosity is not positive, gravity is not
-/// finite, or the mesh has other regions.
+/// finite, a density depends on the temperature and no face is open or more than one region flows, or the mesh has
+/// other regions.
 void check_flow(const FlowOptions& options, const Mesh& mesh);
 
 /// At rest, without pressure.

@@ -4,6 +4,10 @@
 //     momentum i:  integral(phi_i (rho (du/dt + a.grad u) - f) + sigma.grad phi_i)
 //                  + integral(tau_M rho a.grad phi_i r) + integral(tau_C div u grad phi_i),
 //     volume i:    integral(phi_i div u) + integral(tau_M grad phi_i.r).
+// Where the density depends on the temperature, the latter is of mass, in terms of the density rho_i at the vertex,
+//     volume i:    (integral(rho (tau_M r - (u - w)).grad phi_i) + what passes faces) / rho_i,
+// in which rho is the cell's mean; what its vertices gain (flow_mass.h) comes in addition. With tau_C then is
+// div u + (d rho/dt + (u - w).grad rho) / rho.
 //   [Brooks, Hughes 1982] Streamline upwind/Petrov-Galerkin formulations. CMAME 32.
 //   [Hughes, Franca, Balestra 1986] A new finite element formulation for computational fluid dynamics: V.
 //     CMAME 59: PSPG.
@@ -50,6 +54,11 @@ struct FlowCell {
     std::array<double, n> pressure;
     double density, viscosity, per_time;
     bool convection;
+    bool expands;                      // the density depends on the temperature; only then:
+    std::array<Vec3, n> passing;       // u - w
+    std::array<double, n> in_terms;    // of the vertex's density, that of the cell
+    std::array<double, n> densities;
+    double density_rate;               // at vertices, in the mean [kg/(m^3 s)]
 };
 
 template <std::size_t n>
@@ -70,6 +79,8 @@ FlowCell<n> gather(const FlowStage& stage, const Name& name) {
         material.viscosities.empty() ? material.viscosity : mean_at(material.viscosities, cell.vertex);
     cell.per_time = stage.per_time;
     cell.convection = stage.convection;
+    cell.expands = varies;
+    cell.density_rate = material.density_rate.empty() ? 0 : mean_at(material.density_rate, cell.vertex);
     for (std::size_t i = 0; i < n; ++i) {
         const Vertex v = cell.vertex[i];
         cell.x[i] = stage.position[v];
@@ -79,6 +90,9 @@ FlowCell<n> gather(const FlowStage& stage, const Name& name) {
         cell.carrying[i] = stage.convection ? u : Vec3{};
         if (!stage.mesh_velocity.empty()) cell.carrying[i] -= stage.mesh_velocity[v];
         const double density = varies ? material.densities[v] : cell.density;
+        cell.passing[i] = stage.mesh_velocity.empty() ? u : u - stage.mesh_velocity[v];
+        cell.in_terms[i] = cell.density / density;
+        cell.densities[i] = density;
         cell.inertia[i] = -density * stage.gravity;
         if (stage.per_time > 0) cell.inertia[i] += cell.density * stage.per_time * (u - stage.old[v]);
         if (!material.force.empty()) cell.inertia[i] -= material.force[v];
@@ -147,6 +161,8 @@ struct FlowPoint {
     Matrix3 du;                    // row m: grad u_m
     Vec3 dp, residual;             // grad p, r
     double divergence, pressure;
+    double missing;                // of the divergence: the residual of continuity
+    Vec3 passing, thins;           // mean u - w; grad rho / rho
     Times tau;
     std::array<Vec3, n> carried;   // mean of phi_i a
     std::array<Vec3, n> inertia;   // mean of phi_i (rho du/dt - f)
@@ -155,7 +171,7 @@ struct FlowPoint {
 
 template <std::size_t n>
 FlowPoint<n> flow_point(const FlowCell<n>& cell, const CellPoint<n>& at, std::size_t k) {
-    FlowPoint<n> point{at.volume, shape_means<n>[k], {}, {}, {}, {}, 0, 0, {}, {}, {}, {}};
+    FlowPoint<n> point{at.volume, shape_means<n>[k], {}, {}, {}, {}, 0, 0, 0, {}, {}, {}, {}, {}, {}};
     Vec3 carrying, inertia;
     const double per_volume = 1 / at.volume;
     for (std::size_t i = 0; i < n; ++i) {
@@ -167,7 +183,14 @@ FlowPoint<n> flow_point(const FlowCell<n>& cell, const CellPoint<n>& at, std::si
         carrying += value * cell.carrying[i];
         inertia += value * cell.inertia[i];
     }
-    point.divergence = point.du[0].x + point.du[1].y + point.du[2].z;
+    point.missing = point.divergence = point.du[0].x + point.du[1].y + point.du[2].z;
+    if (cell.expands) {
+        for (std::size_t i = 0; i < n; ++i) {
+            point.passing += point.means.value[i] * cell.passing[i];
+            point.thins += cell.densities[i] / cell.density * point.gradient[i];
+        }
+        point.missing += cell.density_rate / cell.density + dot(point.passing, point.thins);
+    }
     const Vec3 convected{dot(carrying, point.du[0]), dot(carrying, point.du[1]), dot(carrying, point.du[2])};
     point.residual = cell.density * convected + inertia + point.dp;
     point.tau = intrinsic_times(cell, directions(point.gradient), carrying);
@@ -181,7 +204,7 @@ template <std::size_t n>
 void add_residual(const FlowCell<n>& cell, const FlowPoint<n>& at,
                   std::array<double, block_size * n>& residual) {
     const Matrix3& du = at.du;
-    const double isotropic = at.tau.volume * at.divergence - at.pressure;
+    const double isotropic = at.tau.volume * at.missing - at.pressure;
     const Matrix3 stress = {
         cell.viscosity * (du[0] + Vec3{du[0].x, du[1].x, du[2].x}) + Vec3{isotropic, 0, 0},
         cell.viscosity * (du[1] + Vec3{du[0].y, du[1].y, du[2].y}) + Vec3{0, isotropic, 0},
@@ -194,8 +217,10 @@ void add_residual(const FlowCell<n>& cell, const FlowPoint<n>& at,
                          at.tau.momentum * cell.density * at.along[i] * at.residual;
         for (int m = 0; m < 3; ++m)
             residual[block_size * i + static_cast<std::size_t>(m)] += at.volume * sum[m];
+        const double steered = at.tau.momentum * dot(g, at.residual);
         residual[block_size * i + 3] +=
-            at.volume * (at.means.value[i] * at.divergence + at.tau.momentum * dot(g, at.residual));
+            at.volume * (cell.expands ? cell.in_terms[i] * (steered - dot(at.passing, g))
+                                      : at.means.value[i] * at.divergence + steered);
     }
 }
 
@@ -215,7 +240,7 @@ Four four(const Vec3& a, double last) { return Four(Four::Register{a.x, a.y, a.z
 
 /// The derivative, column by column of each block, three of momentum and one of volume at once. tau is taken
 /// as it is, and so is the weight of SUPG in large steps.
-template <bool add, std::size_t n>
+template <bool add, bool expands, std::size_t n>
 void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<n>& blocks) {
     const double density = cell.density, volume = at.volume, tau = at.tau.momentum;
     const double newton = cell.convection ? volume * density : 0;
@@ -234,7 +259,9 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
         const Vec3& gi = at.gradient[i];
         const double weight = tau * density * at.along[i];
         const Vec3 viscous = volume * cell.viscosity * gi, steered = volume * tau * gi;
-        const Four compressed = four(volume * at.tau.volume * gi, volume * at.means.value[i]);
+        const Four compressed = four(volume * at.tau.volume * gi, expands ? 0 : volume * at.means.value[i]);
+        const Four terms = four({1, 1, 1}, cell.in_terms[i]);
+        const auto in_terms = [&](const Four& column) { return expands ? terms * column : column; };
         const Vec3 turned = newton * tau * (gi.x * at.du[0] + gi.y * at.du[1] + gi.z * at.du[2]);
         const Four turning = turns ? volume * tau * density * four(at.residual, 0) : Four(0);
         const Four pushed = four(-volume * gi, 0), along = volume * weight * four({1, 1, 1}, 0);
@@ -247,12 +274,14 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
             double* const block = blocks.block(i, j);
             for (int c = 0; c < 3; ++c) {
                 const auto column = static_cast<std::size_t>(c);
-                put<add>(bent * du[column] + Four(viscous[c]) * gradient[j] + Four(gj[c]) * compressed +
-                             Four(same) * unit[column] + Four(value * gi[c]) * turning +
-                             four({}, value * turned[c]),
+                const double passed = expands ? volume * value * gi[c] : 0;
+                const double dilates = expands ? gj[c] + value * at.thins[c] : gj[c];
+                put<add>(in_terms(bent * du[column] + Four(viscous[c]) * gradient[j] + Four(dilates) * compressed +
+                                  Four(same) * unit[column] + Four(value * gi[c]) * turning +
+                                  four({}, value * turned[c] - passed)),
                          block + block_size * column);
             }
-            put<add>(along * gradient[j] + Four(value) * pushed + four({}, dot(steered, gj)),
+            put<add>(in_terms(along * gradient[j] + Four(value) * pushed + four({}, dot(steered, gj))),
                      block + block_size * 3);
         }
     }
@@ -292,6 +321,24 @@ void add_open_facet(const FlowStage& stage, const FlowCell<4>& cell, const CellP
     }
 }
 
+/// What passes a facet of a tet on a face of the box, opposite `corner`, where the density is of the temperature.
+void add_passing(const FlowCell<4>& cell, const CellPoint<4>& at, std::size_t corner, bool derivative,
+                 CellBlocks<4>& blocks) {
+    const Vec3 area = -3 * at.volume_gradient[corner];  // out of the domain
+    Vec3 sum;
+    for (int c : tet_facets[corner]) sum += cell.velocity[static_cast<std::size_t>(c)];
+    for (int row : tet_facets[corner]) {
+        const auto i = static_cast<std::size_t>(row);
+        blocks.residual[block_size * i + 3] += dot(area, cell.velocity[i] + sum) / 12;
+        if (!derivative) continue;
+        for (int column : tet_facets[corner]) {
+            const auto j = static_cast<std::size_t>(column);
+            for (std::size_t c = 0; c < 3; ++c)
+                blocks.block(i, j)[block_size * c + 3] += (i == j ? 2 : 1) * area[static_cast<int>(c)] / 12;
+        }
+    }
+}
+
 template <std::size_t n, class Name>
 void add_cell_points(const FlowStage& stage, const Name& name, bool derivative, CellBlocks<n>& blocks) {
     const FlowCell<n> cell = gather<n>(stage, name);
@@ -301,15 +348,20 @@ void add_cell_points(const FlowStage& stage, const Name& name, bool derivative, 
         const FlowPoint<n> point = flow_point(cell, points[k], k);
         add_residual(cell, point, blocks.residual);
         if (!derivative) continue;
-        if (k == 0) put_derivative<false>(cell, point, blocks);
-        else put_derivative<true>(cell, point, blocks);
+        if (cell.expands) {
+            if (k == 0) put_derivative<false, true>(cell, point, blocks);
+            else put_derivative<true, true>(cell, point, blocks);
+        } else {
+            if (k == 0) put_derivative<false, false>(cell, point, blocks);
+            else put_derivative<true, false>(cell, point, blocks);
+        }
     }
     if constexpr (n == 4) {
         for (std::size_t corner = 0; corner < 4; ++corner) {
             const Patch patch = stage.mesh.patch[name][corner];
-            if (!patch.exists() || patch.value >= box_faces ||
-                !stage.open[static_cast<std::size_t>(patch.value)])
-                continue;
+            if (!patch.exists() || patch.value >= box_faces) continue;
+            if (cell.expands) add_passing(cell, points[0], corner, derivative, blocks);
+            if (!stage.open[static_cast<std::size_t>(patch.value)]) continue;
             add_open_facet(stage, cell, points[0], corner,
                            stage.open_pressure[static_cast<std::size_t>(patch.value)], derivative, blocks);
         }

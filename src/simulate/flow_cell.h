@@ -10,6 +10,7 @@ namespace kropla {
 struct FlowMaterial {
     double density = 0, viscosity = 0;           // where they do not depend on the temperature
     Array<Vertex, double> densities, viscosities;  // at vertices, where they do
+    Array<Vertex, double> density_rate;          // [kg/(m^3 s)] at vertices, as they move; empty: zero
     Array<Vertex, Vec3> force;                   // [N/m^3] at vertices, besides gravity; empty: none
 };
 

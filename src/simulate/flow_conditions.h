@@ -49,6 +49,18 @@ struct FlowConditions {
                                                                   const FlowOptions& options,
                                                                   const FlowBoundary& boundary, double t);
 
+/// Calls `visit(vertex, flux)` for the corners of facets, with the integral of phi_i u.n [m^3/s].
+template <class Visit>
+void for_each_flux(const std::vector<std::array<Vertex, 3>>& facets, const Array<Vertex, Vec3>& position,
+                   const Array<Vertex, Vec3>& velocity, const Visit& visit) {
+    for (const auto& facet : facets) {
+        const auto& [a, b, c] = facet;
+        const Vec3 area = 0.5 * cross(position[b] - position[a], position[c] - position[a]);
+        const Vec3 sum = velocity[a] + velocity[b] + velocity[c];
+        for (Vertex v : facet) visit(v, dot(area, velocity[v] + sum) / 12);
+    }
+}
+
 /// [m^3/s] through facets, along their normals.
 [[nodiscard]] double flux_through(const std::vector<std::array<Vertex, 3>>& facets,
                                   const Array<Vertex, Vec3>& position, const Array<Vertex, Vec3>& velocity);

@@ -6,6 +6,7 @@
 #include "simulate/assembly.h"
 #include "simulate/flow_cell.h"
 #include "simulate/flow_conditions.h"
+#include "simulate/flow_mass.h"
 #include "simulate/flow_solver.h"
 #include "simulate/stop.h"
 
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <sstream>
 
 namespace kropla {
@@ -71,13 +73,14 @@ public:
           material_(flow_materials(current, options, temperature)), guess_(start),
           solver_(ranks, blocks_, unknowns()) {
         system_.value = solver_.values();
+        find_masses();
         if (!steady()) mesh_velocity_ = mesh_velocities(before, current, dt);
     }
 
     void solve_all() {
         if (options_.scheme != FlowScheme::second_order) {
             prescribe(conditions_.end);
-            solve_stage(1, start_.velocity, steady() ? 0 : 1 / dt_);
+            solve_stage({1, 1}, start_.velocity, steady() ? 0 : 1 / dt_);
             return;
         }
         constexpr double onward = (1 - gamma) / gamma;
@@ -87,7 +90,7 @@ public:
             given[v] = start_.velocity[v] + (1 / onward) * (last - start_.velocity[v]);
         }
         prescribe(given);
-        solve_stage(gamma, start_.velocity, 1 / (gamma * dt_));
+        solve_stage({gamma, 1 - gamma}, start_.velocity, 1 / (gamma * dt_));
         Array<Vertex, Vec3> old = start_.velocity;
         for (Vertex v : numbering().vertex) {
             const Vec3 gained = guess_.velocity[v] - start_.velocity[v];
@@ -95,7 +98,7 @@ public:
             guess_.velocity[v] = start_.velocity[v] + (1 / gamma) * gained;
         }
         prescribe(conditions_.end);
-        solve_stage(1, old, 1 / (gamma * dt_));
+        solve_stage({1, gamma}, old, 1 / (gamma * dt_));
     }
 
     /// What is left of the last stage's residual goes into forces.
@@ -119,6 +122,7 @@ public:
             report.face_flux[face] = flux_through(boundary_.faces[face], current_.position, guess_.velocity);
             report.net_flux += report.face_flux[face];
         }
+        report_mass(report);
         report.face_force = face_forces(reaction);
         report.largest_courant = largest_courant();
         return report;
@@ -131,6 +135,7 @@ public:
             end.velocity[v] = guess_.velocity[v];
             end.pressure[v] = guess_.pressure[v];
         }
+        if (masses_) end.density = masses_->densities(1);
         if (!conditions_.closed) return end;
         double sum = 0, volume = 0;
         for_each_share(current_, flow_cells(current_, options_), [&](const auto&, Vertex v, double share) {
@@ -149,6 +154,22 @@ private:
         return numbering().vertex[static_cast<std::size_t>(rows().first_row) + owned_row];
     }
 
+    void report_mass(FlowReport& report) const {
+        if (!masses_) {
+            const auto flowing = std::ranges::find_if(options_.regions, [](const auto& region) { return region.has_value(); });
+            report.mass_error = dt_ * report.net_flux * (*flowing)->density(0);
+            return;
+        }
+        double out = 0;
+        for (std::size_t face = 0; face < 6; ++face)
+            for (Vertex v : numbering().vertex)
+                if (const double rate = passed_[face].empty() ? 0 : passed_[face][v]; rate != 0) {
+                    report.through.push_back({v, face, rate});
+                    out += rate;
+                }
+        report.mass_error = dt_ * out + std::accumulate(gained_.begin(), gained_.end(), 0.0);
+    }
+
     [[nodiscard]] FlowUnknowns unknowns() const {
         FlowUnknowns unknowns{{}, conditions_.closed};
         for (Vertex v : numbering().vertex) {
@@ -164,10 +185,15 @@ private:
                 if (conditions_.fixed[v][static_cast<std::size_t>(m)]) guess_.velocity[v][m] = velocity[v][m];
     }
 
-    /// The stage on the mesh at `share` of the step.
-    void solve_stage(double share, const Array<Vertex, Vec3>& old, double per_time) {
-        const Array<Vertex, Vec3> position = between(before_, current_, share);
-        const double time = t_ + share * dt_;
+    /// When a stage is, as a share of the step, and its weight in the means over the step.
+    struct StageTime {
+        double share, weight;
+    };
+
+    void solve_stage(const StageTime& at, const Array<Vertex, Vec3>& old, double per_time) {
+        const Array<Vertex, Vec3> position = between(before_, current_, at.share);
+        const double time = t_ + at.share * dt_;
+        if (masses_) let_expand(at, position);
         set_forces(current_, position, options_, time, material_);
         const auto open_pressure = open_pressures(position, options_, boundary_, time);
         const FlowStage stage{current_,         position,  mesh_velocity_,     old,
@@ -199,6 +225,58 @@ private:
             left = solver_.size(system_.residual);
         }
         if (left > 0) error_ = left / largest_left_;
+        if (masses_) note_passed(at.weight, position);
+    }
+
+    /// Where the density depends on the temperature.
+    void find_masses() {
+        for (Region r : material_.indices()) {
+            if (material_[r].densities.empty()) continue;
+            expanding_ = r;
+            const Array<Vertex, double>& end = material_[r].densities;
+            masses_.emplace(before_, current_, flow_cells(current_, options_), start_.density.empty() ? end : start_.density,
+                            end, dt_);
+            if (!steady()) material_[r].density_rate = masses_->density_rate();
+            gained_ = Array<Vertex, double>(end.size(), 0.0);
+        }
+    }
+
+    /// Sets the densities of a stage, and what its vertices gain, by the volume that this takes: as it is then, but for the
+    /// last one, that in the step all is gained that there is to gain. Where the mesh goes otherwise than the velocity of a
+    /// solid body has it, for a moment, mass would pass its surface: that is the same in all.
+    void let_expand(const StageTime& at, const Array<Vertex, Vec3>& position) {
+        Array<Vertex, double>& density = material_[expanding_].densities;
+        density = masses_->densities(at.share);
+        expansion_ = Array<Vertex, double>(density.size(), 0.0);
+        if (steady()) return;
+        const Array<Vertex, double> mass = masses_->masses(at.share);
+        Array<Vertex, double> rate = masses_->rates(at.share);
+        if (at.share == 1) {
+            const Array<Vertex, double> begin = masses_->masses(0);
+            for (Vertex v : rate.indices()) rate[v] = (mass[v] - begin[v] - gained_[v]) / (at.weight * dt_);
+        }
+        for (Vertex v : rate.indices()) gained_[v] += at.weight * dt_ * rate[v];
+        Array<Vertex, Vec3> passing = guess_.velocity;
+        for (Vertex v : passing.indices()) passing[v] -= mesh_velocity_[v];
+        double leak = 0;
+        for (const SolidSurface& solid : boundary_.solids)
+            for_each_flux(solid.facets, position, passing, [&](Vertex v, double flux) {
+                rate[v] += density[v] * flux;
+                leak += density[v] * flux;
+            });
+        const double all = std::accumulate(mass.begin(), mass.end(), 0.0);
+        for (Vertex v : numbering().vertex) expansion_[v] = (rate[v] - leak * mass[v] / all) / density[v];
+    }
+
+    /// Adds what passed the faces in a stage to the means over the step.
+    void note_passed(double weight, const Array<Vertex, Vec3>& position) {
+        const Array<Vertex, double>& density = material_[expanding_].densities;
+        for (std::size_t face = 0; face < 6; ++face) {
+            Array<Vertex, double>& passed = passed_[face];
+            passed.resize(position.size(), 0.0);
+            for_each_flux(boundary_.faces[face], position, guess_.velocity,
+                          [&](Vertex v, double flux) { passed[v] += weight * density[v] * flux; });
+        }
     }
 
     [[noreturn]] void give_up(int pass, double left) const {
@@ -214,6 +292,8 @@ private:
             current_, blocks_,
             [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
             system_, ranks_.watch);
+        for (std::size_t r = 0; r < rows().count() && masses_; ++r)
+            system_.residual[block_size * r + 3] += expansion_[vertex_of(r)];
         reaction_ = system_.residual;
         if (conditions_.closed) spread_net_flux();
     }
@@ -389,6 +469,11 @@ private:
     FlowBoundary boundary_;
     FlowConditions conditions_;
     Array<Region, FlowMaterial> material_;
+    Region expanding_;                     // whose density depends on the temperature; only then:
+    std::optional<VertexMasses> masses_;
+    Array<Vertex, double> gained_;         // [kg] in the stages so far
+    Array<Vertex, double> expansion_;      // [m^3/s] what it takes in this one
+    std::array<Array<Vertex, double>, 6> passed_;  // [kg/s] out through faces, in the mean over the step
     FlowState guess_;
     BlockSystem system_;
     std::vector<double> reaction_;  // the residual of the last assembly, as it is

@@ -95,6 +95,15 @@ void check_heat(const HeatOptions& options, const Mesh& mesh) {
     }
 }
 
+namespace {
+
+/// What a curve's value is multiplied by.
+double density_at(const KnownDensity& known, Region region, Vertex v) {
+    return region == known.region ? known.values[v] : 1;
+}
+
+}  // namespace
+
 bool proportional(const HeatOptions& options) {
     return std::ranges::all_of(enthalpy_curves(options), [](const Enthalpy& h) { return h.proportional(); });
 }
@@ -106,13 +115,13 @@ std::vector<double> capacities(const HeatOptions& options) {
 }
 
 std::vector<Array<Vertex, double>> enthalpies(const Mesh& mesh, const HeatOptions& options,
-                                              const Array<Vertex, double>& temperature) {
-    const Array<Region, Enthalpy> curve = enthalpy_curves(options);
+                                              const Array<Vertex, double>& temperature, const KnownDensity& known) {
+    const Array<Region, Enthalpy> curve = enthalpy_curves(options, known.region);
     std::vector<Array<Vertex, double>> all(options.regions.size(), Array<Vertex, double>(mesh.position.size(), 0.0));
     for_each_cell(living_cells(mesh), [&](const auto& cell) {
         const Region region = cell_region(mesh, cell);
         for (Vertex v : cell_vertices(mesh, cell))
-            all[static_cast<std::size_t>(region.value)][v] = curve[region](temperature[v]);
+            all[static_cast<std::size_t>(region.value)][v] = density_at(known, region, v) * curve[region](temperature[v]);
     });
     return all;
 }
@@ -128,17 +137,22 @@ double energy_of(const Mesh& mesh, const std::vector<Array<Vertex, double>>& ent
     return sum;
 }
 
-double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature, Region only) {
-    const Array<Region, Enthalpy> curve = enthalpy_curves(options);
+double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature, Region only,
+              const KnownDensity& known) {
+    const Array<Region, Enthalpy> curve = enthalpy_curves(options, known.region);
     double sum = 0;
     for_each_cell(living_cells(mesh, only), [&](const auto& cell) {
-        const Enthalpy& h = curve[cell_region(mesh, cell)];
-        auto values = at_corners(temperature, cell_vertices(mesh, cell));
+        const Region region = cell_region(mesh, cell);
+        const Enthalpy& h = curve[region];
+        const auto vertices = cell_vertices(mesh, cell);
+        auto values = at_corners(temperature, vertices);
         if (h.proportional()) {
             for (const double slope = h.slope(0); double& value : values) value *= slope;
         } else {
             for (double& value : values) value = h(value);
         }
+        if (region == known.region)
+            for (std::size_t i = 0; i < vertices.size(); ++i) values[i] *= known.values[vertices[i]];
         const auto points = cell_points(corners(mesh, cell));
         for (std::size_t k = 0; k < points.size(); ++k) sum += points[k].volume * mean_value(k, values);
     });
@@ -146,8 +160,8 @@ double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, 
 }
 
 void temperature_of(const Mesh& mesh, const HeatOptions& options, const std::vector<Array<Vertex, double>>& enthalpies,
-                    Array<Vertex, double>& temperature) {
-    const Array<Region, Enthalpy> curve = enthalpy_curves(options);
+                    Array<Vertex, double>& temperature, const KnownDensity& known) {
+    const Array<Region, Enthalpy> curve = enthalpy_curves(options, known.region);
     struct Part {
         Region region;
         double volume = 0;
@@ -163,7 +177,8 @@ void temperature_of(const Mesh& mesh, const HeatOptions& options, const std::vec
     for (Vertex v : parts.indices()) {
         if (parts[v].empty()) continue;
         const auto held = [&](const Part& part) { return enthalpies[static_cast<std::size_t>(part.region.value)][v]; };
-        const auto alone = [&](const Part& part) { return curve[part.region].temperature(held(part)); };
+        const auto density = [&](const Part& part) { return density_at(known, part.region, v); };
+        const auto alone = [&](const Part& part) { return curve[part.region].temperature(held(part) / density(part)); };
         if (parts[v].size() == 1) {
             temperature[v] = alone(parts[v].front());
             continue;
@@ -176,7 +191,7 @@ void temperature_of(const Mesh& mesh, const HeatOptions& options, const std::vec
         }
         const auto rest = [&](double at) {
             double sum = -all;
-            for (const Part& part : parts[v]) sum += part.volume * curve[part.region](at);
+            for (const Part& part : parts[v]) sum += part.volume * density(part) * curve[part.region](at);
             return sum;
         };
         temperature[v] = rising_root(rest, low, high);

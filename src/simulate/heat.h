@@ -58,6 +58,10 @@ namespace kropla {
 // temperature and what its new enthalpy makes, the one nearer to the last is taken), differences of h
 // between corners by chords, k at the last temperatures, until these stay. What is kept is the integral of h, taken as
 // linear between vertices. Radiation at boundaries likewise.
+//
+// Where the density of a gas that flows depends on the temperature (flow.h), h is per mass, and M, L and C are of the
+// density, which is known: rho_j in M, the mean of the cell's vertices in the others. MaterialFlow then keeps what is
+// constant per mass; what is kept is the integral of rho h, taken as linear between vertices.
 
 /// How the material of a region moves.
 enum class Carried {
@@ -210,18 +214,25 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
 void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
                  Array<Vertex, double>& temperature);
 
+/// A region whose density is known at its vertices [kg/m^3] (MaterialFlow): its enthalpy is that times the one per mass.
+struct KnownDensity {
+    Region region = {};  // none
+    Array<Vertex, double> values = {};
+};
+
 /// The energy [J], of all regions or of one: the integral of the enthalpy.
-[[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options,
-                            const Array<Vertex, double>& temperature, Region only = {});
+[[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,
+                            Region only = {}, const KnownDensity& known = {});
 
 /// The enthalpy of each region [J/m^3] at its vertices; elsewhere zero.
 [[nodiscard]] std::vector<Array<Vertex, double>> enthalpies(const Mesh& mesh, const HeatOptions& options,
-                                                            const Array<Vertex, double>& temperature);
+                                                            const Array<Vertex, double>& temperature,
+                                                            const KnownDensity& known = {});
 /// The energy that these hold [J].
 [[nodiscard]] double energy_of(const Mesh& mesh, const std::vector<Array<Vertex, double>>& enthalpies);
 /// The temperature that these enthalpies make: at an interface the one with which both sides together hold what they
 /// do. Vertices without cells keep what `temperature` has.
 void temperature_of(const Mesh& mesh, const HeatOptions& options, const std::vector<Array<Vertex, double>>& enthalpies,
-                    Array<Vertex, double>& temperature);
+                    Array<Vertex, double>& temperature, const KnownDensity& known = {});
 
 }  // namespace kropla

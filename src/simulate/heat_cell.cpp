@@ -5,6 +5,7 @@
 //     89: tau, here with the cell's length along the flow of [Tezduyar, Park 1986] CMAME 59.
 #include "simulate/heat_cell.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kropla {
@@ -25,16 +26,12 @@ struct Cell {
     bool flows;
     double conductivity;              // [W/(m K)]
     double dt;                        // [s]
+    double density;                   // [kg/m^3] where enthalpies are per mass, the mean of the corners; else one
+    std::array<double, n> thin_before, thin;  // there, at the step's begin and end [kg/m^3]
+    bool by_mass;
     bool proportional;                // the enthalpy is `slope` times the temperature, anywhere
     bool low;                         // of low order
 };
-
-template <std::size_t n>
-double mean(const std::array<double, n>& values) {
-    double sum = 0;
-    for (double value : values) sum += value;
-    return sum / static_cast<double>(n);
-}
 
 bool flows(const HeatStep& step, Region region) {
     const bool rests = step.options.regions[static_cast<std::size_t>(region.value)].carried == Carried::at_rest;
@@ -62,8 +59,12 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
                  .potential = at_corners(step.flow.potential[region], v),
                  .velocity = {},
                  .flows = flows(step, region),
-                 .conductivity = conductivity.constant() ? conductivity(0) : mean(at_corners(state.conductivity, v)),
+                 .conductivity = conductivity.constant() ? conductivity(0) : mean_of(at_corners(state.conductivity, v)),
                  .dt = step.dt,
+                 .density = 1,
+                 .thin_before = {},
+                 .thin = {},
+                 .by_mass = region == step.flow.by_mass,
                  .proportional = enthalpy.proportional(),
                  .low = false};
     if (cell.proportional) {
@@ -75,13 +76,18 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
         cell.enthalpy = at_corners(state.enthalpy, v);
         cell.slope = at_corners(state.slope, v);
     }
+    if (cell.by_mass) {
+        cell.thin_before = at_corners(step.flow.density_before, v);
+        cell.thin = at_corners(step.flow.density, v);
+        cell.density = mean_of(cell.thin);
+    }
     if (cell.flows) cell.velocity = at_corners(step.flow.velocity, v);
     if (!step.low.empty())
         for (Vertex corner : v) cell.low = cell.low || step.low[corner] != 0;
     return cell;
 }
 
-/// What is carried: a matrix on enthalpies, in the form of CellSystem [m^3].
+/// What is carried: a matrix on enthalpies, in the form of CellSystem [m^3], or [kg] if these are per mass.
 template <std::size_t n>
 struct Carrying {
     std::array<std::array<double, n>, n> matrix = {};
@@ -102,6 +108,34 @@ void add_mass(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& system)
             system.held[i] += cell.slope[i] * lumped;
             system.right[i] += lumped * cell.old[i] - gained * old_product;
             system.load[i] += cell.dt * lumped * cell.source[i];
+        }
+    }
+}
+
+/// The same where enthalpies are per mass, M_ij = integral(rho_j phi_i phi_j): L is of the cell's density, and of low order
+/// masses are exchanged along edges until no coupling has the wrong sign: at the end by the larger density of its ends, at
+/// the begin by the smaller one. Both act on differences alone.
+template <std::size_t n>
+void add_mass_by_density(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& system) {
+    for (std::size_t k = 0; k < cell.now.size(); ++k) {
+        const ShapeMeans<n>& means = shape_means<n>[k];
+        const double now = cell.now[k].volume, before = cell.before[k].volume;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double lumped = now * mean_product(k, i, cell.thin);
+            carrying.row_sum[i] += lumped;
+            system.held[i] += cell.slope[i] * lumped;
+            system.load[i] += cell.dt * now * means.value[i] * cell.source[i];
+            for (std::size_t j = 0; j < n; ++j) {
+                const double product = means.product[i][j], rise = cell.old[i] - cell.old[j];
+                system.right[i] += before * product * cell.thin_before[j] * cell.old[j];
+                if (cell.low) {
+                    carrying.matrix[i][j] += now * product * (cell.thin[j] - std::max(cell.thin[i], cell.thin[j]));
+                    system.right[i] += before * product * std::min(cell.thin_before[i], cell.thin_before[j]) * rise;
+                } else {
+                    carrying.matrix[i][j] += now * product * (cell.thin[j] - cell.density);
+                    system.right[i] += now * product * cell.density * rise;
+                }
+            }
         }
     }
 }
@@ -147,7 +181,8 @@ void add_upwinding(const Cell<n>& cell, const std::array<Vec3, n>& mean_gradient
                    Carrying<n>& carrying, CellSystem<n>& system) {
     double sum_along = 0;
     for (const Vec3& g : mean_gradient) sum_along += std::abs(dot(v, g));
-    const double tau = intrinsic_time(norm(v), sum_along, cell.conductivity / mean(cell.slope), cell.dt);
+    const double diffusivity = cell.conductivity / (cell.density * mean_of(cell.slope));
+    const double tau = intrinsic_time(norm(v), sum_along, diffusivity, cell.dt);
     for (std::size_t k = 0; k < cell.now.size(); ++k) {
         const CellPoint<n>& point = cell.now[k];
         std::array<double, n> along;  // the point's volume times v.grad phi_i [m^3/s]
@@ -155,11 +190,11 @@ void add_upwinding(const Cell<n>& cell, const std::array<Vec3, n>& mean_gradient
         std::array<double, n> means;  // of what j brings: phi_j and, over the step, v.grad phi_j
         for (std::size_t j = 0; j < n; ++j)
             means[j] = shape_means<n>[k].value[j] + cell.dt / point.volume * along[j];
-        const double known = mean_value(k, cell.old) + cell.dt * mean_value(k, cell.source);
+        const double known = cell.density * mean_value(k, cell.old) + cell.dt * mean_value(k, cell.source);
         for (std::size_t i = 0; i < n; ++i) {
             const double weight = tau * along[i];
-            for (std::size_t j = 0; j < n; ++j) carrying.matrix[i][j] += weight * means[j];
-            carrying.row_sum[i] += weight;  // the components sum to zero
+            for (std::size_t j = 0; j < n; ++j) carrying.matrix[i][j] += weight * cell.density * means[j];
+            carrying.row_sum[i] += weight * cell.density;  // the components sum to zero
             system.right[i] += weight * known;
         }
     }
@@ -186,20 +221,21 @@ void add_convection(const Cell<n>& cell, Carrying<n>& carrying, CellSystem<n>& s
         const Vec3 mean_moved = mean_value(k, moved);
         past += point.volume * (flown - mean_moved);
         for (std::size_t i = 0; i < n; ++i)
-            carrying.row_sum[i] -= dot(flown, point.volume_gradient[i]) - dot(mean_moved, mean_volume_gradient[k][i]);
+            carrying.row_sum[i] -= cell.density * (dot(flown, point.volume_gradient[i]) -
+                                                   dot(mean_moved, mean_volume_gradient[k][i]));
         for (std::size_t j = 0; j < n; ++j) {
             const Vec3 product = mean_product(k, j, moved);
             lumped[j] += point.volume * (means.value[j] * moved[j] - product);
             const Vec3 flown_product = means.value[j] * by_potential + mean_product(k, j, flown_at);
             for (std::size_t i = 0; i < n; ++i)
-                carrying.matrix[i][j] -=
-                    dot(flown_product, point.volume_gradient[i]) - dot(product, mean_volume_gradient[k][i]);
+                carrying.matrix[i][j] -= cell.density * (dot(flown_product, point.volume_gradient[i]) -
+                                                         dot(product, mean_volume_gradient[k][i]));
         }
     }
     if (cell.low) return;
     const std::array<Vec3, n> mean_gradient = mean_gradients<n>(cell.now);
     for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) carrying.matrix[i][j] -= dot(lumped[i], mean_gradient[j]);
+        for (std::size_t j = 0; j < n; ++j) carrying.matrix[i][j] -= cell.density * dot(lumped[i], mean_gradient[j]);
     add_upwinding(cell, mean_gradient, past / (cell.dt * total_volume<n>(cell.now)), carrying, system);
 }
 
@@ -230,7 +266,8 @@ CellSystem<n> system_of(const HeatStep& step, const Name& name) {
     const Cell<n> cell = gather<n>(step, name);
     Carrying<n> carrying;
     CellSystem<n> system;
-    add_mass(cell, carrying, system);
+    if (cell.by_mass) add_mass_by_density(cell, carrying, system);
+    else add_mass(cell, carrying, system);
     add_conduction(cell, system);
     if (cell.flows || cell.x0 != cell.x1) add_convection(cell, carrying, system);
     add_carrying(cell, carrying, system);
@@ -239,9 +276,13 @@ CellSystem<n> system_of(const HeatStep& step, const Name& name) {
 
 }  // namespace
 
-Array<Region, Enthalpy> enthalpy_curves(const HeatOptions& options) {
+Array<Region, Enthalpy> enthalpy_curves(const HeatOptions& options, Region by_mass) {
     Array<Region, Enthalpy> curves;
-    for (const HeatRegion& region : options.regions) curves.push_back(Enthalpy(region.material));
+    for (const HeatRegion& region : options.regions) {
+        HeatMaterial material = region.material;
+        if (by_mass == Region(curves.size())) material.density = 1;
+        curves.push_back(Enthalpy(material));
+    }
     return curves;
 }
 

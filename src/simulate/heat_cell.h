@@ -7,7 +7,8 @@
 
 namespace kropla {
 
-/// What the material of a region is at its vertices; empty where it does not depend on the temperature.
+/// What the material of a region is at its vertices; empty where it does not depend on the temperature. Enthalpies are
+/// per volume, or per mass in the region that is carried by its mass.
 struct MaterialState {
     Array<Vertex, double> enthalpy;      // [J/m^3] at the temperature that is guessed
     Array<Vertex, double> slope;         // [J/(m^3 K)] of it there
@@ -33,8 +34,8 @@ struct HeatStep {
     Array<Vertex, char> low = {};      // vertices whose cells are to be of low order (bounded.h); empty: none
 };
 
-/// Of each region.
-[[nodiscard]] Array<Region, Enthalpy> enthalpy_curves(const HeatOptions& options);
+/// Of each region; per mass of this one.
+[[nodiscard]] Array<Region, Enthalpy> enthalpy_curves(const HeatOptions& options, Region by_mass = {});
 
 /// The cell's part of the system derived in heat.h: rows in J, unknowns in K.
 [[nodiscard]] CellSystem<4> cell_system(const HeatStep& step, Tet t);

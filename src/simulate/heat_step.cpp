@@ -373,8 +373,9 @@ private:
 
     [[nodiscard]] HeatBalance balance(const Assembled& assembled) const {
         HeatBalance sum;
-        sum.before = energy(step_.before, step_.options, step_.old_temperature, step_.only);
-        sum.after = energy(step_.current, step_.options, after_, step_.only);
+        const MaterialFlow& flow = step_.flow;
+        sum.before = energy(step_.before, step_.options, step_.old_temperature, step_.only, {flow.by_mass, flow.density_before});
+        sum.after = energy(step_.current, step_.options, after_, step_.only, {flow.by_mass, flow.density});
         sum.surfaces.assign(step_.options.surfaces.size(), 0.0);
         sum.sources.assign(step_.options.regions.size(), 0.0);
         sum.held.assign(step_.options.regions.size(), 0.0);
@@ -472,7 +473,7 @@ HeatStep heat_step(const Mesh& before, const Mesh& current, const HeatOptions& o
             .carried = carry_bodies(before, current, options),
             .source = conditions.source,
             .dt = dt,
-            .enthalpy = enthalpy_curves(options),
+            .enthalpy = enthalpy_curves(options, flow.by_mass),
             .material = Array<Region, MaterialState>(options.regions.size())};
 }
 

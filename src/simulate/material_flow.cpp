@@ -8,6 +8,7 @@
 #include "simulate/solver.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace kropla {
@@ -89,23 +90,61 @@ void balance(const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
     for (Vertex v : swept.indices()) swept[v] -= rate * share[v];
 }
 
-/// The integrals of grad phi_i . grad phi_j [m].
+/// What a vertex's mass grows by [kg/s], less what the mesh and the velocity bring to it within the region.
+Array<Vertex, double> missing_mass(const Step& step, const Cells& cells, const SolvedFlow& solved) {
+    Array<Vertex, double> missing(step.current.position.size(), 0.0);
+    for_each_cell(cells, [&](const auto& cell) {
+        const auto vertices = cell_vertices(step.current, cell);
+        constexpr std::size_t n = std::tuple_size_v<std::remove_cvref_t<decltype(vertices)>>;
+        const Corners<n> x0 = corners(step.before, cell), x1 = corners(step.current, cell);
+        const CellPoints<n> before = cell_points(x0), now = cell_points(x1);
+        const auto gradients = mean_volume_gradients(x0, x1);
+        const auto thin0 = at_corners(solved.density_before, vertices), thin1 = at_corners(solved.density, vertices);
+        const double density = mean_of(thin1);
+        const auto velocity = at_corners(solved.velocity, vertices);
+        std::array<Vec3, n> moved;
+        for (std::size_t i = 0; i < n; ++i) moved[i] = (x1[i] - x0[i]) / step.dt;
+        for (std::size_t k = 0; k < now.size(); ++k) {
+            const Vec3 flown = mean_value(k, velocity), mesh = mean_value(k, moved);
+            for (std::size_t i = 0; i < n; ++i)
+                missing[vertices[i]] +=
+                    (now[k].volume * mean_product(k, i, thin1) - before[k].volume * mean_product(k, i, thin0)) / step.dt -
+                    density * (dot(flown, now[k].volume_gradient[i]) - dot(mesh, gradients[k][i]));
+        }
+    });
+    return missing;
+}
+
+/// The integrals of phi_i over the cells, of the density at their vertices [kg].
+Array<Vertex, double> shares_of_mass(const Mesh& mesh, const Cells& cells, const Array<Vertex, double>& density) {
+    Array<Vertex, double> share(mesh.position.size(), 0.0);
+    for_each_share(mesh, cells, [&](const auto&, Vertex v, double volume) { share[v] += density[v] * volume; });
+    return share;
+}
+
+/// The integrals of density grad phi_i . grad phi_j [m], or [kg/m^2].
 template <std::size_t n>
-CellSystem<n> laplacian(const CellPoints<n>& points) {
+CellSystem<n> laplacian(const CellPoints<n>& points, double density) {
     CellSystem<n> system;
     for (const CellPoint<n>& point : points)
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = 0; j < n; ++j)
-                system.matrix[i][j] += dot(point.volume_gradient[i], point.volume_gradient[j]) / point.volume;
+                system.matrix[i][j] +=
+                    density / point.volume * dot(point.volume_gradient[i], point.volume_gradient[j]);
     return system;
 }
 
-/// A residual is gas lost or gained. Of no weight is what would fill the vertex's share of the volume in a
+/// A residual is gas lost or gained. An empty density is one. Of no weight is what would fill the vertex's share of the volume in a
 /// step: the tolerance then is the relative change of a constant state.
 LinearSystem potential_system(const Mesh& mesh, const Pattern& pattern, const Array<Vertex, double>& swept,
-                              const Array<Vertex, double>& share, double dt, const Watch* watch) {
+                              const Array<Vertex, double>& share, const Array<Vertex, double>& density, double dt,
+                              const Watch* watch) {
     CellSystems systems;
-    ask_cells(pattern.cells, [&](const auto& cell) { return laplacian(cell_points(corners(mesh, cell))); },
+    ask_cells(pattern.cells,
+              [&](const auto& cell) {
+                  const double of_cell = density.empty() ? 1 : mean_of(at_corners(density, cell_vertices(mesh, cell)));
+                  return laplacian(cell_points(corners(mesh, cell)), of_cell);
+              },
               [](const auto&) { return true; }, systems, watch);
     LinearSystem system(pattern.rows);
     add_cells(pattern, systems, system);
@@ -127,28 +166,43 @@ Array<Vertex, double> at_vertices(const Mesh& mesh, const Numbering& numbering,
 }  // namespace
 
 MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& current,
-                           const std::vector<Region>& flowing, double dt, const Array<Vertex, Vec3>& velocity) {
-    MaterialFlow flow{Array<Region, Array<Vertex, double>>(count_regions(current)), velocity};
+                           const std::vector<Region>& flowing, double dt, const SolvedFlow& solved) {
+    MaterialFlow flow{Array<Region, Array<Vertex, double>>(count_regions(current)), solved.velocity};
     const Step step{before, current, dt};
     const SolverChoice choice{.name = "potential flow",
                               .prefix = "potential_",
                               .preconditioner = Preconditioner::multigrid,
                               .tolerance = 2e-13,
                               .potential = true};
+    if (!solved.density.empty()) {
+        assert(flowing.size() == 1);
+        flow.by_mass = flowing.front();
+        flow.density_before = solved.density_before;
+        flow.density = solved.density;
+    }
     for (Region region : flowing) {
-        Array<Vertex, double> source = swept_by_boundary(step, region);
         const Cells cells = living_cells(current, region);
-        if (!velocity.empty()) {
-            add_through(current, region, cells, velocity, flow);
-            for (const auto& [v, of, face, rate] : flow.through)
-                if (of == region) source[v] += rate;
-            take_divergence(current, cells, velocity, source);
+        Array<Vertex, double> source;
+        if (region == flow.by_mass) {
+            source = missing_mass(step, cells, solved);
+            for (const FaceMass& part : solved.through) flow.through.push_back({part.vertex, region, part.face, part.rate});
+        } else {
+            source = swept_by_boundary(step, region);
+            if (!solved.velocity.empty()) {
+                add_through(current, region, cells, solved.velocity, flow);
+                take_divergence(current, cells, solved.velocity, source);
+            }
         }
+        for (const auto& [v, of, face, rate] : flow.through)
+            if (of == region) source[v] += rate;
         if (std::ranges::all_of(source, [](double s) { return s == 0; })) continue;
-        const Array<Vertex, double> share = shares_of_volume(current, cells);
+        const Array<Vertex, double> share = region == flow.by_mass ? shares_of_mass(current, cells, flow.density)
+                                                                   : shares_of_volume(current, cells);
         balance(share, source);
         const Pattern pattern = make_pattern(current, cells, ranks);
-        const LinearSystem system = potential_system(current, pattern, source, share, dt, ranks.watch);
+        const LinearSystem system =
+            potential_system(current, pattern, source, share, region == flow.by_mass ? flow.density : Array<Vertex, double>{},
+                             dt, ranks.watch);
         const Solution potential = solve(ranks, system, choice);
         flow.potential[region] = at_vertices(current, pattern.numbering, potential.value);
         flow.iterations += potential.iterations;

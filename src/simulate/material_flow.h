@@ -1,12 +1,21 @@
 #pragma once
 
 #include <kropla/mesh/mesh.h>
+#include <kropla/simulate/flow.h>
 #include <kropla/simulate/petsc.h>
 
 #include <cstddef>
 #include <vector>
 
 namespace kropla {
+
+/// What a step of a flow found (flow.h).
+struct SolvedFlow {
+    Array<Vertex, Vec3> velocity = {};  // [m/s] at the step's end; empty: at rest
+    // Where the density depends on the temperature: at the step's begin and end [kg/m^3], and what passed the faces.
+    Array<Vertex, double> density_before = {}, density = {};
+    std::vector<FaceMass> through = {};
+};
 
 /// How the material of regions that do not go with the mesh flows during a step: u = velocity + grad Phi.
 struct MaterialFlow {
@@ -15,17 +24,19 @@ struct MaterialFlow {
         Vertex vertex;
         Region region;
         std::size_t face;
-        double rate;  // [m^3/s]
+        double rate;  // [m^3/s], or [kg/s] in the region that is carried by its mass
     };
     Array<Region, Array<Vertex, double>> potential;  // Phi [m^2/s]; empty where nothing flows
     Array<Vertex, Vec3> velocity = {};               // [m/s] that was solved for; empty: none
     std::vector<Through> through = {};
-    int iterations = 0;  // of the solver; 0 if nothing had to be solved
+    Region by_mass = {};  // whose density depends on the temperature: what is carried there is per mass
+    Array<Vertex, double> density_before = {}, density = {};  // of it [kg/m^3], at the step's begin and end
+    int iterations = 0;   // of the solver; 0 if nothing had to be solved
 };
 
-/// The least flow of an incompressible gas beside `velocity` (empty: at rest) which makes way for bodies during the step
+/// The least flow of an incompressible gas beside what `solved` has which makes way for bodies during the step
 /// from `before` to `current` (the same connectivity, dt [s] apart), in each region of `flowing` by itself, such that no
-/// gas passes the region's moving boundary, but as `velocity` has it the faces of the box. Where nothing moves, u is
+/// gas passes the region's moving boundary, but as `solved` has it the faces of the box. Where nothing moves, u is
 /// exactly zero. Each region is in one piece.
 ///
 /// In the weak form, with the region's shape at the end of the step, v the velocity and w that of the mesh,
@@ -36,10 +47,16 @@ struct MaterialFlow {
 /// the sum over their points (elements.h), as is what the flow carries; so they agree, to rounding: what is carried by u
 /// is conserved and a constant stays one, though a velocity of finite elements is solenoidal only in the mean. All F_i
 /// together are the growth of the region's volume: zero if bodies keep theirs. If not, gas has no way to go;
-/// then the divergence of u is that growth, spread evenly. Options of the solver: -potential_ksp_type and so
+/// then the divergence of u is that growth, spread evenly.
+///
+/// With a density, which only one region may have, it is mass that is conserved, not volume: there A_ij is of rho grad
+/// phi_i . grad phi_j, and the right side what makes, at each vertex,
+///     m1_i - m0_i = dt (integral of rho (u - w) . grad phi_i - what passes faces),   m_i = integral of rho phi_i,
+/// rho in the flux the mean of a cell's vertices at the end. So a state that is constant per mass stays constant.
+/// Options of the solver: -potential_ksp_type and so
 /// on. Throws SolverError if it does not converge.
 [[nodiscard]] MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& current,
                                          const std::vector<Region>& flowing, double dt,
-                                         const Array<Vertex, Vec3>& velocity = {});
+                                         const SolvedFlow& solved = {});
 
 }  // namespace kropla
