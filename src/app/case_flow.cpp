@@ -24,8 +24,11 @@ FlowRegion read_region(NotedTable table, const Case& it, std::size_t region, Vec
     table.table().allow({"density", "viscosity", "initial", "force"});
     FlowRegion read;
     read.density = read_material(table, "density", it, region);
-    if (!read.density.constant())
-        table.table().refuse("density", "must be a number: a flow whose density changes is not simulated yet");
+    if (!read.density.constant() && read.density != it.heat->regions[region].material.density)
+        table.table().refuse("density", fmt::format("depends on T, so heat.region.{}.density must be the same",
+                                                    region_name(it.domain, region)));
+    if (!read.density.constant() && !it.species.empty())
+        table.table().refuse("density", "must be a number in a case with [[species]]: what expands does not carry them yet");
     read.viscosity = read_material(table, "viscosity", it, region);
     initial = table.vector("initial", "[u, v, w] [m/s]");
     read.force = table.vector("force", "[fx, fy, fz] [N/m^3]");
@@ -102,6 +105,9 @@ void read_flow(const CaseTable& file, Case& it) {
         for (std::size_t f = 0; f < face_keys.size(); ++f)
             if (faces.has(face_keys[f])) plan.options.faces[f] = read_face(faces, face_keys[f], probe, written.faces[f]);
     }
+    const auto is_open = [](const FlowFace& face) { return face.kind == FlowFace::Kind::open; };
+    if (!plan.options.regions[0]->density.constant() && std::ranges::none_of(plan.options.faces, is_open))
+        regions.table(names[0]).refuse("density", "depends on T, and what expands has no way out: give a face of flow.face a pressure");
     it.flow = std::move(plan);
 }
 

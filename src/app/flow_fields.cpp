@@ -18,11 +18,19 @@ constexpr std::array<const char*, 3> components = {"velocity_x", "velocity_y", "
 
 std::size_t place_of_flow(const Case& it) { return (it.heat ? 1 : 0) + species_fields(it).size(); }
 
-std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it) {
+std::size_t count_flow_fields(const Case& it) { return expands(it) ? 5 : 4; }
+
+bool expands(const Case& it) { return it.flow && !it.flow->options.regions[0]->density.constant(); }
+
+std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it, const Array<Vertex, double>& temperature) {
     std::vector<NodalField> fields;
     const std::size_t vertices = mesh.position.size();
     for (const char* name : components) fields.push_back({name, "m/s", Array<Vertex, double>(vertices, 0.0)});
     fields.push_back({"pressure", "Pa", Array<Vertex, double>(vertices, 0.0)});
+    if (expands(it)) {
+        fields.push_back({"density", "kg/m^3", Array<Vertex, double>(vertices, 0.0)});
+        for (Vertex v : mesh.position.indices()) fields.back().values[v] = it.flow->options.regions[0]->density(temperature[v]);
+    }
     for (std::size_t r = 0; r < it.flow->initial.size(); ++r) {
         const std::string key = fmt::format("flow.region.{}.initial", region_name(it.domain, r));
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -37,17 +45,19 @@ std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it) {
 }
 
 FlowState flow_state(const Case& it, std::span<const NodalField> fields) {
-    const auto flow = fields.subspan(place_of_flow(it), 4);
+    const auto flow = fields.subspan(place_of_flow(it), count_flow_fields(it));
     FlowState state{Array<Vertex, Vec3>(flow[0].values.size()), flow[3].values};
+    if (expands(it)) state.density = flow[4].values;
     for (Vertex v : state.velocity.indices()) state.velocity[v] = {flow[0].values[v], flow[1].values[v], flow[2].values[v]};
     return state;
 }
 
 void keep_flow(const Case& it, const FlowState& flow, std::span<NodalField> fields) {
-    const auto kept = fields.subspan(place_of_flow(it), 4);
+    const auto kept = fields.subspan(place_of_flow(it), count_flow_fields(it));
     for (Vertex v : flow.velocity.indices())
         for (int axis = 0; axis < 3; ++axis) kept[as_size(axis)].values[v] = flow.velocity[v][axis];
     kept[3].values = flow.pressure;
+    if (expands(it)) kept[4].values = flow.density;
 }
 
 // The derivative of the motion by differences over a small part of the step; of the rotation, R' R^T is the spin's cross.

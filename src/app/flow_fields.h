@@ -10,11 +10,18 @@
 
 namespace kropla {
 
-/// Of the four fields of a flow, velocity by its components and pressure, the place of the first among those of a state.
+/// Of the fields of a flow, velocity by its components, pressure and, if it depends on the temperature, density: the place of
+/// the first among those of a state, and their number.
 [[nodiscard]] std::size_t place_of_flow(const Case& it);
+[[nodiscard]] std::size_t count_flow_fields(const Case& it);
 
-/// As they begin. Throws CaseError if an initial velocity is not finite.
-[[nodiscard]] std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it);
+/// Does the gas expand where it is heated?
+[[nodiscard]] bool expands(const Case& it);
+
+/// As they begin. `temperature` [K] is needed where the density depends on it. Throws CaseError if an initial velocity is
+/// not finite.
+[[nodiscard]] std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it,
+                                                   const Array<Vertex, double>& temperature);
 
 /// From the fields of a state, and back.
 [[nodiscard]] FlowState flow_state(const Case& it, std::span<const NodalField> fields);

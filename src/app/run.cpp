@@ -51,7 +51,7 @@ State start(const Case& it, const Ranks& ranks) {
     std::ranges::move(initial_species(mesh, it), std::back_inserter(fields));
     if (it.flow) {
         check_flow(it.flow->options, mesh);
-        std::ranges::move(initial_flow(mesh, it), std::back_inserter(fields));
+        std::ranges::move(initial_flow(mesh, it, it.heat ? fields.front().values : Array<Vertex, double>{}), std::back_inserter(fields));
     }
     State state{MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it, watch)), std::move(fields), {}};
     for (const auto& motion : it.free) {

@@ -110,6 +110,7 @@ void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* 
     if (it_.flow) {
         FlowState flow = flow_state(it_, state.fields);
         fields.push_back({"pressure", "Pa", std::move(flow.pressure)});
+        if (expands(it_)) fields.push_back({"density", "kg/m^3", std::move(flow.density)});
         vectors.push_back({"velocity", "m/s", std::move(flow.velocity)});
     }
     write_vtu(folder_ / frame_name(step), mesh, fields, watch, vectors);

@@ -18,6 +18,8 @@
 namespace kropla {
 namespace {
 
+constexpr double agreed_density = 0.05;  // [-] of it: how far the density may be behind the temperature, and
+constexpr int most_rounds = 5;           // of flow and heat in turns
 constexpr double rounding = 1e-13;  // [-] of the largest temperature: what a transfer may leave beyond bounds
 
 /// The coldest and hottest vertex of a region.
@@ -71,8 +73,8 @@ public:
         for (const SpeciesField& field : species_fields(it))
             fields_.per_vertex(state.fields[field.place].values, {.only = Region(field.region)});
         if (!it.flow) return;
-        for (std::size_t k = 0; k < 4; ++k)
-            fields_.per_vertex(state.fields[place_of_flow(it) + k].values, {.only = Region(0), .limit = false});
+        for (std::size_t k = 0; k < count_flow_fields(it); ++k)  // the density has no new extrema
+            fields_.per_vertex(state.fields[place_of_flow(it) + k].values, {.only = Region(0), .limit = k >= 4});
     }
 
     Advanced advance(const StepOptions& options, std::function<void(const Mesh&)> last_look = {}) {
@@ -103,14 +105,18 @@ private:
     void finish_heat(const Advanced& done) {
         const Mesh& mesh = state_.moving.reference();
         const HeatExtremes& solved = report.heat.extremes;
-        if (!enthalpy_.empty()) temperature_of(mesh, *it_.heat, enthalpy_, temperature());
+        if (!enthalpy_.empty()) temperature_of(mesh, *it_.heat, enthalpy_, temperature(), known_density());
         else if (!done.transfer.empty() && done.transfer.front().beyond > rounding * std::abs(solved.most.value))
             keep_within(ranks_, mesh, *it_.heat, solved.least.value, solved.most.value, temperature());
     }
 
     /// Into the arrays that `fields_` knows.
     void take_enthalpies(const Mesh& mesh) {
-        std::ranges::move(enthalpies(mesh, *it_.heat, temperature()), enthalpy_.begin());
+        std::ranges::move(enthalpies(mesh, *it_.heat, temperature(), known_density()), enthalpy_.begin());
+    }
+    [[nodiscard]] KnownDensity known_density() const {
+        if (!expands(it_)) return {};
+        return {Region(0), flow_state(it_, state_.fields).density};
     }
     [[nodiscard]] double energy_on(const Mesh& mesh) {
         return enthalpy_.empty() ? energy(mesh, *it_.heat, temperature()) : energy_of(mesh, enthalpy_);
@@ -122,24 +128,60 @@ private:
             fields_.per_vertex(temperature(), {.weight = capacities(*it_.heat)});
             return;
         }
-        enthalpy_ = enthalpies(state_.moving.reference(), *it_.heat, temperature());
+        enthalpy_ = enthalpies(state_.moving.reference(), *it_.heat, temperature(), known_density());
         for (std::size_t r = 0; r < enthalpy_.size(); ++r) fields_.per_vertex(enthalpy_[r], {.only = Region(r)});
         fields_.per_vertex(temperature());
     }
 
     Answer solve(const StepToSolve& step) {
         unsolved_.clear();
-        Array<Vertex, Vec3> velocity;
-        if (it_.flow) {
-            const Answer answer = solve_flow(step, velocity);
-            if (!std::holds_alternative<Solved>(answer)) return answer;
+        if (!enthalpy_.empty()) temperature_of(step.before, *it_.heat, enthalpy_, temperature(), known_density());
+        const Array<Vertex, double> begin = it_.heat ? temperature() : Array<Vertex, double>{};
+        FlowState flow;
+        // As bodies are moved once more, what was found before serves again.
+        if (!expands(it_) || step.round == 1 || expected_.size() != begin.size()) expected_ = begin;
+        for (int round = 1;; ++round) {
+            SolvedFlow solved;
+            if (it_.flow) {
+                const Answer answer = solve_flow(step, flow, solved);
+                if (!std::holds_alternative<Solved>(answer)) return answer;
+            }
+            if (!it_.heat && it_.species.empty()) break;
+            flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt,
+                                  solved);
+            if (!it_.heat) break;
+            temperature() = begin;
+            solve_heat(step);
+            if (!expands(it_)) break;
+            expected_ = temperature();
+            if (density_agrees(step, solved.density, round == most_rounds) || round == most_rounds) break;
         }
-        if (!it_.heat && it_.species.empty()) return Solved{};
-        flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt,
-                              velocity);
-        if (it_.heat) solve_heat(step);
+        if (it_.flow) keep_flow(it_, flow, state_.fields);
+        if (!enthalpy_.empty()) take_enthalpies(step.current);
         for (std::size_t s = 0; s < it_.species.size(); ++s) solve_species(step, s);
         return Solved{};
+    }
+
+    /// Is a density that of the temperature? If not, the last time it is said.
+    bool density_agrees(const StepToSolve& step, const Array<Vertex, double>& density, bool last) {
+        const Property& wanted = it_.flow->options.regions[0]->density;
+        Vertex behind;
+        double most = agreed_density;
+        for_each_cell(living_cells(step.current, Region(0)), [&](const auto& cell) {
+            for (Vertex v : cell_vertices(step.current, cell)) {
+                const double missed = std::abs(wanted(temperature()[v]) / density[v] - 1);
+                if (missed > most) behind = v;
+                most = std::max(most, missed);
+            }
+        });
+        if (!behind.exists()) return true;
+        const Vec3& x = step.current.position[behind];
+        if (last)
+            report.warnings.push_back({"flow.region.surroundings.density",
+                                       fmt::format("the density of the gas is behind its temperature, by {:.2g} of it at ({:.4g}, "
+                                                   "{:.4g}, {:.4g}) m, t = {:.4g} s: shorter steps would keep it nearer",
+                                                   most, x.x, x.y, x.z, step.time + step.dt)});
+        return false;
     }
 
     /// Where free bodies are expected, if they go on as in the step before.
@@ -175,7 +217,7 @@ private:
     }
 
     /// The flow, and where bodies go in it.
-    Answer solve_flow(const StepToSolve& step, Array<Vertex, Vec3>& velocity) {
+    Answer solve_flow(const StepToSolve& step, FlowState& flow, SolvedFlow& solved) {
         constexpr double agreed = 3e-4;   // [-] of what acts on a body
         constexpr double of_mass = 1e-5;  // [-] a hundredth of what forces ask for, for the sake of the mass
         constexpr double let_pass = 1.1;  // [-] of the Courant number: no step is taken back for a little
@@ -183,10 +225,10 @@ private:
         FlowOptions options = it_.flow->options;
         options.bodies = surface_velocities(step.dt);
         options.tolerance = of_mass;
-        FlowState flow = flow_state(it_, state_.fields);
+        flow = flow_state(it_, state_.fields);
+        solved.density_before = flow.density;
         try {
-            report.flow = step_flow(ranks_, step.before, step.current, options, flow, step.time, step.dt,
-                                    it_.heat ? temperature() : Array<Vertex, double>{});
+            report.flow = step_flow(ranks_, step.before, step.current, options, flow, step.time, step.dt, expected_);
         } catch (const SolverError& error) {
             unsolved_ = error.what();
             return NotSolved{unsolved_};
@@ -204,16 +246,15 @@ private:
             for (auto& [body, rigid] : free_) rigid.improve();
             return BodiesMoved{places()};
         }
-        keep_flow(it_, flow, state_.fields);
-        velocity = std::move(flow.velocity);
+        solved.velocity = flow.velocity;
+        solved.density = flow.density;
+        solved.through = report.flow.through;
         return Solved{};
     }
 
     void solve_heat(const StepToSolve& step) {
-        if (!enthalpy_.empty()) temperature_of(step.before, *it_.heat, enthalpy_, temperature());
         HeatReport heat =
             step_heat(ranks_, step.before, step.current, *it_.heat, flow_, state_.fields.front(), step.time, step.dt);
-        if (!enthalpy_.empty()) take_enthalpies(step.current);
         report.warnings = beyond_tables(*it_.heat, step.current, temperature(), step.time + step.dt);
         report.heat = std::move(heat);
     }
@@ -243,6 +284,7 @@ private:
     const Ranks& ranks_;
     Fields fields_;
     MaterialFlow flow_;
+    Array<Vertex, double> expected_;  // temperature [K] at the end of the step
     std::deque<std::pair<std::size_t, RigidStep>> free_;  // bodies that go where forces take them, in this attempt
     std::string unsolved_;  // why the flow could not be solved for, in the last round
     std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor

@@ -102,6 +102,42 @@ TEST(RunFlow, CarriesHeatAndSpecies) {
     EXPECT_EQ(contents(folder.path / "d/frames/00004.vtu"), contents(folder.path / "e/frames/00004.vtu"));
 }
 
+/// What blows is thinner where it is hot, and what it is blown into is cold.
+std::string expanding() {
+    const std::string thin = "density = { T = [300, 400, 600, 1000], value = [1, 0.75, 0.5, 0.3] }\n";
+    std::string text = replaced(blown, "surroundings]\ndensity = 1\nviscosity", "surroundings]\n" + thin + "viscosity");
+    text = replaced(text, "conductivity = 0.01\ndensity = 1\n", "conductivity = 0.01\n" + thin);
+    return text.substr(0, text.find("[[species]]"));
+}
+
+TEST(RunFlow, AGasExpandsAndKeepsMassAndEnergy) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", expanding());
+    write(folder.path / "half.toml", replaced(expanding(), "end = 0.4\nsteps = 4", "end = 0.2\nsteps = 2"));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const Table steps = read_table(folder.path / "d/steps.csv");
+    const std::vector<double> energy = numbers(steps, "energy_integral"), error = numbers(steps, "energy_error"),
+                              mass_error = numbers(steps, "mass_error_surroundings");
+    for (std::size_t n = 0; n < energy.size(); ++n) {
+        EXPECT_NEAR(error[n], 0, 1e-11 * energy[n]);
+        EXPECT_NEAR(mass_error[n], 0, 1.1e-6);  // of 0.01 that pass
+    }
+    EXPECT_GT(numbers(steps, "volume_out_z_min").back() + numbers(steps, "volume_out_z_max").back(), 0.01);
+    const Checkpoint last = read_checkpoint(folder.path / "d/checkpoint.h5");
+    for (Tet t : last.mesh.tets.indices()) {
+        if (!alive(last.mesh, t)) continue;
+        for (Vertex v : last.mesh.tets[t]) {
+            EXPECT_GE(last.fields[0].values[v], 300 - 1e-7);
+            EXPECT_LE(last.fields[0].values[v], 1000 + 1e-7);
+        }
+    }
+    ASSERT_EQ(kropla_program(folder, "run half.toml --out e").code, 0);
+    ASSERT_EQ(kropla_program(folder, "run a.toml --out e --resume").code, 0);
+    EXPECT_EQ(lasting_columns(folder.path / "e"), lasting_columns(folder.path / "d"));
+    EXPECT_EQ(contents(folder.path / "e/frames/00004.vtu"), contents(folder.path / "d/frames/00004.vtu"));
+}
+
 TEST(RunFlow, CutsStepsByCourantNumbers) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", replaced(blown, "steps = 4", "steps = 4\ncourant = 0.3"));
@@ -131,6 +167,13 @@ TEST(RunFlow, WhatIsWrongIsNamed) {
         {text + "[flow.face]\nz_max = \"open\"\n",
          "flow.face.z_max (line 24): must be \"wall\", \"slip\", { velocity = [u, v, w] } [m/s] or { pressure = ... } [Pa], got "
          "\"open\""},
+        {replaced(expanding(), "{ pressure = 0 }", "\"slip\""),
+         "flow.region.surroundings.density (line 18): depends on T, and what expands has no way out: give a face of flow.face a pressure"},
+        {replaced(expanding(), "conductivity = 0.01\ndensity = { T = [300, 400, 600, 1000], value = [1, 0.75, 0.5, 0.3] }\n",
+                  "conductivity = 0.01\ndensity = 1\n"),
+         "flow.region.surroundings.density (line 18): depends on T, so heat.region.surroundings.density must be the same"},
+        {expanding() + "[[species]]\nname = \"smoke\"\n[species.region.surroundings]\ndiffusivity = 0.001\ninitial = 0\n",
+         "flow.region.surroundings.density (line 18): must be a number in a case with [[species]]: what expands does not carry them yet"},
         {replaced(text, "[time]\n", "[time]\ncourant = -1\n"), "time.courant (line 8): must be positive, got -1"}};
     for (const auto& [spoiled, refusal] : wrong) {
         write(folder.path / "a.toml", spoiled);
