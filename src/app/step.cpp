@@ -254,7 +254,7 @@ private:
 
     void solve_heat(const StepToSolve& step) {
         HeatReport heat =
-            step_heat(ranks_, step.before, step.current, *it_.heat, flow_, state_.fields.front(), step.time, step.dt);
+            step_heat(ranks_, step.before, step.current, *it_.heat, flow_, state_.fields.front(), step.time, step.dt, expected_);
         report.warnings = beyond_tables(*it_.heat, step.current, temperature(), step.time + step.dt);
         report.heat = std::move(heat);
     }

@@ -202,9 +202,11 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
                      NodalField& temperature, double t, double dt);
 
 /// The same in a flow that is known, as `material_flow` gives it for the regions that are `at_rest`. At faces of the box it
-/// brings in what is there: the face's value, or else the temperature that the face had at the step's begin.
+/// brings in what is there: the face's value, or else the temperature that the face had at the step's begin. Where the step
+/// is not linear, a guess of the temperature at its end saves passes.
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
-                     const MaterialFlow& flow, NodalField& temperature, double t, double dt);
+                     const MaterialFlow& flow, NodalField& temperature, double t, double dt,
+                     const Array<Vertex, double>& guess = {});
 
 /// The regions whose material moves like that.
 [[nodiscard]] std::vector<Region> regions_that(Carried move, const HeatOptions& options);

@@ -88,6 +88,11 @@ public:
         fill_old_enthalpies();
     }
 
+    void begin_with(const Array<Vertex, double>& guess) {
+        after_ = guess;
+        for (const FixedValue& fixed : conditions_.fixed) after_[fixed.vertex] = fixed.value;
+    }
+
     void solve_all() {
         const std::vector<double> before = per_row(step_.old_temperature);
         for (int looks = 1;; ++looks) {
@@ -498,11 +503,13 @@ double HeatBalance::brought() const {
 }
 
 HeatReport step_heat_in(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
-                        const MaterialFlow& flow, Region only, Array<Vertex, double>& values, double t, double dt) {
+                        const MaterialFlow& flow, Region only, Array<Vertex, double>& values, double t, double dt,
+                        const Array<Vertex, double>& guess) {
     const HeatConditions conditions = heat_conditions(before, current, options, t, dt, ranks.watch);
     HeatStep step = heat_step(before, current, options, conditions, flow, values, dt);
     step.only = only;
     HeatSolution solution(ranks, step, conditions);
+    if (!guess.empty()) solution.begin_with(guess);
     solution.solve_all();
     HeatReport report = solution.report();
     report.potential_iterations = flow.iterations;
@@ -518,9 +525,10 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
 }
 
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
-                     const MaterialFlow& flow, NodalField& temperature, double t, double dt) {
+                     const MaterialFlow& flow, NodalField& temperature, double t, double dt,
+                     const Array<Vertex, double>& guess) {
     check_step(current, options, dt);
-    return step_heat_in(ranks, before, current, options, flow, {}, temperature.values, t, dt);
+    return step_heat_in(ranks, before, current, options, flow, {}, temperature.values, t, dt, guess);
 }
 
 void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
