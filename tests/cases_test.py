@@ -55,6 +55,10 @@ FLOWS = {
                               {"force_x_sphere [N]": (0.470, 0.475)}),
     "settling": ShortFlow(["size.surface=2.5e-3", "size.growth=0.3", "size.far=0.02", "time.steps=3", "time.end=0.06"],
                           {"w_sphere [m/s]": (-0.0284, -0.0280), "flow_rounds": (1, 5)}),
+    # The upper one is about to touch the other.
+    "two_settling": ShortFlow(["body.upper.centre=[0.0006, 0, 0.0668]", "body.upper.motion.velocity=[0, 0, -0.05]",
+                               "size.surface=1.4e-3", "size.growth=0.4", "size.far=0.01", "time.steps=1", "time.end=0.01"],
+                              {"contacts": (1, 1), "gap_upper [m]": (5.53e-4, 5.54e-4)}),
     "arc_flight": ShortFlow(["size.surface=2.2e-4", "size.growth=0.3", "size.far=1.5e-3", "time.steps=3", "time.end=3e-4"],
                             {"w_droplet [m/s]": (-0.432, -0.428), "temperature_mean_droplet [K]": (2402.0, 2402.4),
                              "temperature_max_droplet [K]": (2413, 2416)}),

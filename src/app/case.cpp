@@ -2,6 +2,7 @@
 #include "app/case.h"
 
 #include "app/case_body.h"
+#include "app/case_contact.h"
 #include "app/case_flow.h"
 #include "app/case_heat.h"
 #include "app/case_species.h"
@@ -124,7 +125,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     apply_settings(settings, table);
     CaseReading reading{.file = name};
     const CaseTable file(reading, "", table);
-    file.allow({"parameters", "domain", "body", "size", "quality", "time", "heat", "species", "flow", "output", "random"});
+    file.allow({"parameters", "domain", "body", "size", "quality", "time", "heat", "species", "flow", "contact", "output", "random"});
     if (file.has("parameters")) read_parameters(file.table("parameters"), reading);
     Case it;
     it.domain.box = read_box(file.table("domain"));
@@ -135,6 +136,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
     read_species(file, it);
     read_flow(file, it);
+    read_contact(file, it);
     if (it.time.courant && !it.flow) file.table("time").refuse("courant", "needs [flow]: what is to cross no more cells in a step");
     if (file.has("output")) it.output = read_output(file.table("output"));
     if (file.has("random")) it.random = read_random(file.table("random"));

@@ -4,6 +4,7 @@
 #include <kropla/domain/domain.h>
 #include <kropla/simulate/flow.h>
 #include <kropla/simulate/heat.h>
+#include "app/contact.h"
 #include "app/rigid_motion.h"
 #include <kropla/simulate/species.h>
 
@@ -89,6 +90,7 @@ struct Case {
     std::vector<Species> species;
     std::optional<FlowPlan> flow;  // nothing: the surroundings rest, but for making way
     std::vector<std::optional<FreeMotion>> free;  // per body: goes where forces take it
+    std::optional<ContactOptions> contact;  // of free bodies; nothing: the run ends where the mesh cannot follow them
     OutputPlan output;
     RandomSeed random;
 

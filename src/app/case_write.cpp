@@ -97,6 +97,12 @@ std::string flow(const Case& it) {
     return text;
 }
 
+std::string contact(const Case& it) {
+    const ContactOptions& options = *it.contact;
+    return fmt::format("\n[contact]\nlubrication = {}\n", options.lubrication) +
+           line(it, "contact", "restitution", options.restitution) + line(it, "contact", "gap", options.gap);
+}
+
 std::string quality(const Case& it) {
     const QualityPlan& plan = it.quality;
     const std::string text = "\n[quality]\n" + line(it, "quality", "max_aspect_ratio", plan.max_aspect_ratio);
@@ -129,6 +135,7 @@ std::string to_toml(const Case& it) {
     if (it.heat) text += heat(it);
     for (std::size_t s = 0; s < it.species.size(); ++s) text += species(it, s);
     if (it.flow) text += flow(it);
+    if (it.contact) text += contact(it);
     text += "\n[output]\n" + line(it, "output", "every", it.output.every);
     return text + "\n[random]\n" + line(it, "random", "seed", it.random.seed);
 }

@@ -213,6 +213,20 @@ std::string doubt(const Case& it, const Approach& gap, double in_sizes) {
         metres(rounded_down(size_for_gap(it.domain, gap, in_sizes))));
 }
 
+/// Throws if a free body begins nearer to something than it may come.
+void check_start(const Case& it) {
+    if (!it.contact) return;
+    FreeSteps bodies;
+    for (std::size_t body = 0; body < it.free.size(); ++body)
+        if (it.free[body]) bodies.emplace_back(body, RigidStep(*it.free[body], {}, {}, {}, {}, 0, 0));
+    Contacts at_start(it.domain, *it.contact, 0, bodies, 0, 0);
+    const std::vector<double> gaps = at_start.report().gaps;
+    for (const auto& [body, step] : bodies)
+        if (gaps[body] < it.contact->gap)
+            throw DomainError(fmt::format("{} begins {} from what is nearest to it, less than contact.gap = {}",
+                                          named(it.domain.bodies[body]), metres(gaps[body]), metres(it.contact->gap)));
+}
+
 }  // namespace
 
 std::vector<double> numbers_in(std::string_view formula) {
@@ -277,6 +291,7 @@ std::vector<std::string> foresee(const Case& it, const Watch* watch) {
             warnings.push_back(doubt(it, gap, needed));
     }
     check_sizes(it, all.limit, watch);
+    check_start(it);
     if (const std::string thin = thin_box(domain); !thin.empty()) warnings.push_back(thin);
     if (domain.size.growth > steepest_growth)
         warnings.push_back(fmt::format("size.growth = {} counts as {}: steeper sizes leave cells above the limit",

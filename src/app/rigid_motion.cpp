@@ -17,7 +17,9 @@ Vec3 second_half(const SixVector& v) { return {v[3], v[4], v[5]}; }
 SixVector both(const Vec3& a, const Vec3& b) { return {a.x, a.y, a.z, b.x, b.y, b.z}; }
 Vec3 times(const std::array<Vec3, 3>& m, const Vec3& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
 
-/// Gaussian elimination with pivots [Golub, Van Loan 2013, 3.4].
+}  // namespace
+
+// Gaussian elimination with pivots [Golub, Van Loan 2013, 3.4].
 SixVector solved(SixMatrix a, SixVector b) {
     for (std::size_t k = 0; k < 6; ++k) {
         std::size_t pivot = k;
@@ -37,8 +39,6 @@ SixVector solved(SixMatrix a, SixVector b) {
     }
     return b;
 }
-
-}  // namespace
 
 Weighed weighed(const Mesh& mesh, Region body, double density) {
     Weighed found;
@@ -95,12 +95,20 @@ void RigidStep::guess_response(double fluid_density, double fluid_viscosity) {
 RigidVelocity RigidStep::velocity(double t) const {
     const double s = t - t_;
     const Vec3 a = first_half(rate_);
-    return {body_.centre + s * state_.velocity + 0.5 * s * s * a, state_.velocity + s * a,
-            state_.spin + s * second_half(rate_)};
+    RigidVelocity now = {body_.centre + s * state_.velocity + 0.5 * s * s * a, state_.velocity + s * a,
+                         state_.spin + s * second_half(rate_)};
+    if (leaps_) {
+        const double left = 1 - s / dt_;
+        now.centre += s * (1 + left) / 2 * first_half(leap_);
+        now.velocity += left * first_half(leap_);
+        now.spin += left * second_half(leap_);
+    }
+    return now;
 }
 
 Pose RigidStep::pose() const {
-    const Vec3 turn = dt_ * (state_.spin + 0.5 * dt_ * second_half(rate_));
+    Vec3 turn = dt_ * (state_.spin + 0.5 * dt_ * second_half(rate_));
+    if (leaps_) turn += 0.5 * dt_ * second_half(leap_);
     const double angle = norm(turn);
     const Rotation turned = angle > 0 ? rotation_about(turn, angle) : Rotation{};
     const Vec3 arm = shape_centre_ - body_.centre;
@@ -114,7 +122,7 @@ FreeState RigidStep::end() const {
     state.pose = pose();
     state.velocity = last.velocity;
     state.spin = last.spin;
-    state.rate = rate_;
+    state.rate = leaps_ ? SixVector{} : rate_;  // what a touch did to it does not go on
     return state;
 }
 
@@ -130,6 +138,7 @@ SixVector RigidStep::missing(const Vec3& force, const Vec3& torque) const {
 
 double RigidStep::take(const Vec3& force, const Vec3& torque) {
     missing_ = missing(force, torque);
+    taken_ = true;
     if (last_rate_) {  // Broyden's update: what was missing changed by the response and the inertia, times the change
         SixVector step, seen;
         double square = 0;
@@ -153,13 +162,22 @@ double RigidStep::take(const Vec3& force, const Vec3& torque) {
                     state_.response[i][j] += seen[i] * step[j] * (j < 3 ? 1 : length) / square;
     }
     const double radius = std::cbrt(0.75 * body_.mass / (motion_.density * pi));
-    const double acting = std::max({norm(force), body_.mass * norm(gravity_), norm(torque) / radius});
-    const double left = std::max(norm(first_half(missing_)), norm(second_half(missing_)) / radius);
+    acting_ = std::max({norm(force), body_.mass * norm(gravity_), norm(torque) / radius});
+    return scaled(missing_, acting_);
+}
+
+double RigidStep::scaled(const SixVector& wrench, double acting) const {
+    const double radius = std::cbrt(0.75 * body_.mass / (motion_.density * pi));
+    const double left = std::max(norm(first_half(wrench)), norm(second_half(wrench)) / radius);
     return acting > 0 ? left / acting : 0;
 }
 
-void RigidStep::improve() {
-    SixMatrix matrix = state_.response;
+double RigidStep::share(const SixVector& wrench, double contact) const {
+    return scaled(wrench, std::max(acting_, contact));
+}
+
+SixMatrix RigidStep::resistance(bool of_flow) const {
+    SixMatrix matrix = of_flow ? state_.response : SixMatrix{};
     for (std::size_t i = 0; i < 6; ++i) {
         for (std::size_t j = 0; j < 6; ++j) {
             if (i == j && i < 3) matrix[i][j] += body_.mass;
@@ -167,10 +185,32 @@ void RigidStep::improve() {
             if (motion_.free[i] == 0 || motion_.free[j] == 0) matrix[i][j] = i == j ? 1 : 0;
         }
     }
-    const SixVector change = solved(matrix, missing_);
+    return matrix;
+}
+
+void RigidStep::improve() {
+    const SixVector change = solved(resistance(), missing_);
     last_rate_ = rate_;
     last_missing_ = missing_;
     for (std::size_t i = 0; i < 6; ++i) rate_[i] += change[i];
+}
+
+void RigidStep::go(const SixVector& rate, const SixVector& leap) {
+    constexpr double same = 1e-2;  // [-] of the change of the rate: what a change of the leap leaves to be learnt from
+    const double length = std::cbrt(body_.mass / motion_.density);
+    double rate_change = 0, leap_change = 0;
+    for (std::size_t i = 0; i < 6; ++i) {
+        rate_change = std::max(rate_change, (i < 3 ? 1 : length) * std::abs(rate[i] - rate_[i]) * dt_);
+        leap_change = std::max(leap_change, (i < 3 ? 1 : length) * std::abs(leap[i] - leap_[i]));
+    }
+    last_rate_.reset();
+    if (taken_ && leap_change <= same * rate_change) {
+        last_rate_ = rate_;
+        last_missing_ = missing_;
+    }
+    rate_ = rate;
+    leap_ = leap;
+    leaps_ = leap_ != SixVector{};
 }
 
 }  // namespace kropla

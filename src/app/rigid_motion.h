@@ -25,6 +25,8 @@ namespace kropla {
 /// Force and torque, or velocity and spin, or their rates.
 using SixVector = std::array<double, 6>;
 using SixMatrix = std::array<SixVector, 6>;
+/// The x of a x = b; a is not singular.
+[[nodiscard]] SixVector solved(SixMatrix a, SixVector b);
 
 /// What a body is told at the start.
 struct FreeMotion {
@@ -73,7 +75,25 @@ public:
     /// Tries the rate that what is known leads to.
     void improve();
 
+    // Of what else than the flow acts, contact.h knows: it asks for the equations, and says what to try.
+
+    /// What is left of them at the rate that is tried, without contacts [N], [N m].
+    [[nodiscard]] const SixVector& left() const { return missing_; }
+    /// By how much a change of the rate lessens that: inertia, and the response of the flow or not.
+    [[nodiscard]] SixMatrix resistance(bool of_flow = true) const;
+    [[nodiscard]] const SixVector& rate() const { return rate_; }
+    [[nodiscard]] const SixVector& leap() const { return leap_; }
+    [[nodiscard]] const FreeState& begin() const { return state_; }
+    /// One along and about axes along and about which it is free, else zero.
+    [[nodiscard]] const SixVector& freedom() const { return motion_.free; }
+    /// A force with its torque as a share of all that acts; `contact` [N] is what contacts do.
+    [[nodiscard]] double share(const SixVector& wrench, double contact) const;
+    /// Tries a rate, and a leap of the velocity at the step's begin, which is gone again at its end: bodies that touch go
+    /// otherwise than evenly. What the flow answers to another leap than the one before tells nothing of its response.
+    void go(const SixVector& rate, const SixVector& leap);
+
 private:
+    [[nodiscard]] double scaled(const SixVector& wrench, double acting) const;
     [[nodiscard]] SixVector missing(const Vec3& force, const Vec3& torque) const;
 
     FreeMotion motion_;
@@ -82,6 +102,10 @@ private:
     Vec3 shape_centre_, gravity_;
     double t_, dt_;
     SixVector rate_;
+    SixVector leap_ = {};   // [m/s], [rad/s] at the begin
+    bool leaps_ = false;    // else `leap_` is zero
+    bool taken_ = false;    // what the flow does at a rate that was tried
+    double acting_ = 0;     // [N] in all, of the flow and gravity
     std::optional<SixVector> last_rate_;   // tried before
     SixVector last_missing_ = {}, missing_ = {};
 };

@@ -7,12 +7,14 @@
 #include <kropla/simulate/heat.h>
 
 #include <kropla/base/error.h>
+#include <kropla/domain/words.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 namespace kropla {
@@ -65,6 +67,20 @@ std::vector<StepWarning> beyond_tables(const HeatOptions& heat, const Mesh& mesh
     return warnings;
 }
 
+/// Which pairs touched.
+std::vector<StepWarning> touch_warnings(const Domain& domain, const ContactReport& report, double t) {
+    std::vector<StepWarning> warnings;
+    for (const ContactForce& contact : report.contacts) {
+        if (!contact.touches) continue;
+        const auto& [body, wall, other] = contact.who;
+        const std::string pair = fmt::format("{} touches {}", named(domain.bodies[body]),
+                                             wall >= 0 ? wall_name(wall) : named(domain.bodies[other]));
+        warnings.push_back({pair, fmt::format("{} at {}, t = {}, for the first time", pair, place_words(contact.place),
+                                              time_words(t))});
+    }
+    return warnings;
+}
+
 /// What is carried, solved for and looked at in a step of the case.
 class Simulation {
 public:
@@ -94,6 +110,7 @@ public:
         }();
         if (it_.heat) finish_heat(done);
         for (const auto& [body, step] : free_) state_.free[body] = step.end();
+        if (contacts_) report.contact = contacts_->report();
         return done;
     }
 
@@ -199,6 +216,10 @@ private:
                                                                  it_.flow->options.gravity, moving.time(), dt)).second;
             step.guess_response(around.density(0), around.viscosity(0));
         }
+        if (it_.contact) {
+            contacts_.emplace(it_.domain, *it_.contact, it_.flow->options.regions[0]->viscosity(0), free_, moving.time(), dt);
+            contacts_->guess();
+        }
         return places();
     }
     [[nodiscard]] std::vector<BodyPlace> places() const {
@@ -242,8 +263,10 @@ private:
             const auto force = std::ranges::find(report.flow.bodies, region_of_body(body), &BodyForce::body);
             missed = std::max(missed, rigid.take(force->force, force->torque));
         }
+        if (contacts_) missed = contacts_->settle();
         if (missed > agreed) {
-            for (auto& [body, rigid] : free_) rigid.improve();
+            if (contacts_) contacts_->improve();
+            else for (auto& [body, rigid] : free_) rigid.improve();
             return BodiesMoved{places()};
         }
         solved.velocity = flow.velocity;
@@ -285,7 +308,8 @@ private:
     Fields fields_;
     MaterialFlow flow_;
     Array<Vertex, double> expected_;  // temperature [K] at the end of the step
-    std::deque<std::pair<std::size_t, RigidStep>> free_;  // bodies that go where forces take them, in this attempt
+    FreeSteps free_;  // bodies that go where forces take them, in this attempt
+    std::optional<Contacts> contacts_;  // likewise, what they do to each other
     std::string unsolved_;  // why the flow could not be solved for, in the last round
     std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor
 };
@@ -308,6 +332,7 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, const Ste
     const std::vector<BodyState> before = states();
     report.mesh = simulation.advance(options);
     report.bodies = states();
+    if (it.contact) std::ranges::move(touch_warnings(it.domain, report.contact, report.mesh.time), std::back_inserter(report.warnings));
     for (std::size_t body = 0; body < before.size(); ++body)
         report.velocities.push_back((report.bodies[body].place - before[body].place) / report.mesh.dt);
     for (std::size_t body = 0; it.flow && body < before.size(); ++body)

@@ -34,6 +34,7 @@ struct StepReport {
     std::vector<BodyState> bodies;       // at its end
     std::vector<Vec3> velocities;        // [m/s] of the bodies' centroids, in the mean over it
     std::vector<Vec3> spins;             // [rad/s] of the bodies at its end, if there is a flow
+    ContactReport contact;               // if the case has contacts
     std::vector<StepWarning> warnings;
 };
 

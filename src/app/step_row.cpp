@@ -25,6 +25,14 @@ void add_forces(const StepReport& report, std::size_t body, const std::string& n
     add("torque", acting.torque, "N m");
 }
 
+/// How near a free body is to what it may touch, and what that does to it.
+void add_contact(const StepReport& report, std::size_t body, const std::string& name, StepRow& row) {
+    const bool known = body < report.contact.forces.size();
+    row.push_back({fmt::format("gap_{} [m]", name), known ? report.contact.gaps[body] : 0});
+    for (int axis = 0; axis < 3; ++axis)
+        row.push_back({fmt::format("contact_force_{}_{} [N]", "xyz"[axis], name), known ? report.contact.forces[body][axis] : 0});
+}
+
 /// Where each body is, how it goes, and how large and warm it is.
 void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
     for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
@@ -40,6 +48,7 @@ void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
                                {fmt::format("volume_{} [m^3]", name), state.volume},
                                {fmt::format("area_{} [m^2]", name), state.area}});
         if (it.flow) add_forces(report, body, name, row);
+        if (it.contact && it.free[body]) add_contact(report, body, name, row);
         if (!it.heat) continue;
         const double leaves = body < report.heat.surfaces.size() ? report.heat.surfaces[body].total : 0;
         row.insert(row.end(), {{fmt::format("temperature_min_{} [K]", name), state.coldest},
@@ -138,6 +147,7 @@ StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, 
     if (it.heat) add_energy(report, *it.heat, row);
     add_species(report, it, row);
     if (it.flow) add_flow(report, row);
+    if (it.contact) row.push_back({"contacts", count(std::ranges::count_if(report.contact.contacts, &ContactForce::touches))});
     return row;
 }
 

@@ -38,6 +38,11 @@ BodyResult body_result(const Table& steps, const std::string& name, const std::v
         body.force = vectors(steps, "force_x_" + name, "force_y_" + name, "force_z_" + name);
         body.spin = vectors(steps, "spin_x_" + name, "spin_y_" + name, "spin_z_" + name);
     }
+    if (has_column(steps, "gap_" + name)) {
+        body.gap = numbers(steps, "gap_" + name);
+        body.contact_force =
+            vectors(steps, "contact_force_x_" + name, "contact_force_y_" + name, "contact_force_z_" + name);
+    }
     if (!has_column(steps, "temperature_mean_" + name)) return body;
     body.coldest = numbers(steps, "temperature_min_" + name);
     body.mean = numbers(steps, "temperature_mean_" + name);
@@ -207,6 +212,7 @@ RunResults results_of(const RunFiles& run) {
     results.faces = faces_of(run.steps, "heat_out_", dt);
     results.energy = energy_of(run.steps, results.faces, dt);
     results.flow = flow_of(run, results.bodies, dt);
+    if (has_column(run.steps, "contacts")) results.contacts = numbers(run.steps, "contacts");
     return results;
 }
 

@@ -15,6 +15,8 @@ struct BodyResult {
     std::vector<Vec3> place, velocity;  // [m] of the centroid, [m/s]
     std::vector<double> volume;         // [m^3]
     std::vector<Vec3> force = {}, spin = {};  // [N] of the flow, [rad/s]; empty without one
+    std::vector<double> gap = {};             // [m] to what is nearest; empty if it may not touch anything
+    std::vector<Vec3> contact_force = {};     // [N] likewise
     std::vector<double> coldest = {}, mean = {}, hottest = {};  // [K]
     std::vector<double> heat_from = {};           // [W] conducted out through its surface
     double given_off = 0;                         // [J] of that, over the run
@@ -80,6 +82,7 @@ struct RunResults {
     std::vector<FaceResult> faces;  // all six with their heat, or none
     std::optional<EnergyBalance> energy;
     std::optional<FlowResult> flow = {};
+    std::vector<double> contacts = {};  // per step: pairs of bodies, or body and wall, that touched; empty if none may
 };
 /// Runs of older versions lack columns: what they would tell is not there. Throws FileError if a cell is no number.
 [[nodiscard]] RunResults results_of(const RunFiles& run);

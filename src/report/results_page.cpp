@@ -153,6 +153,28 @@ std::string draw_through_flow(const RunResults& results) {
            "</table>";
 }
 
+/// How near free bodies came to what they may touch, and what that did to them.
+std::string draw_contacts(const RunResults& results) {
+    if (results.contacts.empty()) return {};
+    std::string rows;
+    for (const BodyResult& body : results.bodies)
+        if (!body.gap.empty())
+            rows += table_row("td", {escaped(body.name), with_unit(*std::ranges::min_element(body.gap), "m"),
+                                     with_unit(body.gap.back(), "m"),
+                                     with_unit(most_by_size(sizes(body.contact_force)), "N", 3)});
+    const auto first = std::ranges::find_if(results.contacts, [](double touches) { return touches > 0; });
+    std::string touched = "Nothing touched.";
+    if (first != results.contacts.end())
+        touched = "The first touch is in the step that ends at " +
+                  with_unit(results.time[static_cast<std::size_t>(first - results.contacts.begin())], "s") +
+                  "; there are touches in " +
+                  std::to_string(std::ranges::count_if(results.contacts, [](double touches) { return touches > 0; })) +
+                  " of " + std::to_string(results.contacts.size()) + " steps.";
+    return "<h3>Contacts</h3><table>" +
+           table_row("th", {"body", "least gap to a wall or another", "at the end", "force of contacts, at most"}) + rows +
+           "</table><p class=\"soft\">" + touched + " Their force is that of touches and of lubrication in narrow gaps.</p>";
+}
+
 /// Of what flows, what is missed; in a sound run nothing but rounding.
 std::string draw_mass(const RunResults& results) {
     if (!results.flow) return {};
@@ -311,6 +333,17 @@ std::string draw_flow_around_bodies(const RunResults& results) {
     return html;
 }
 
+/// Of a few bodies that may touch something the gap and the force, of many the gap.
+std::string draw_touching_bodies(const RunResults& results) {
+    const auto touching = bodies_that(results, [](const BodyResult& body) { return !body.gap.empty(); });
+    std::string html = draw(results, "Gap to what is nearest" + whose(touching), "m",
+                            of_bodies(touching, [](const BodyResult& body) { return body.gap; }));
+    for (const BodyResult* body : touching)
+        if (touching.size() <= own_charts && most_by_size(sizes(body->contact_force)) > 0)
+            html += draw_components(results, "Force of contacts on " + body->name, " along ", "N", body->contact_force);
+    return html;
+}
+
 std::string draw_flow_through_faces(const RunResults& results) {
     std::vector<Series> faces;
     if (results.flow)
@@ -342,10 +375,10 @@ std::string draw_results(const RunResults& results, const std::string& pictures)
     if (results.time.empty()) return {};
     const std::string charts = draw_temperatures(results) + draw_heat(results) + draw_stored(results) +
                                draw_displacements(results) + draw_speeds(results) +
-                               draw_flow_around_bodies(results) + draw_flow_through_faces(results);
+                               draw_flow_around_bodies(results) + draw_touching_bodies(results) + draw_flow_through_faces(results);
     const std::string content =
         draw_bodies(results) + draw_faces(results) + draw_through_flow(results) + draw_energy(results) +
-        draw_mass(results) +
+        draw_mass(results) + draw_contacts(results) +
         (charts.empty() ? ""
                         : "<h3>Over time</h3>" + not_all_lines(results.bodies.size(), "bodies") +
                               left_out(results) + "<div class=\"charts\">" + charts + "</div>") +

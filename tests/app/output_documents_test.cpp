@@ -28,6 +28,9 @@ TEST(OutputDocuments, HaveTheColumnsOfSteps) {
     it.domain.bodies[0].name = "NAME";
     it.heat.emplace();
     it.species = {{.name = "SPECIES", .regions = {}}};
+    it.free.resize(1);
+    it.free[0].emplace();
+    it.contact.emplace();
     it.flow.emplace().options.regions.emplace_back(FlowRegion{});
     std::string header = csv_header(step_row(1, {}, {}, {}, it));
     for (const char* face : {"x_max", "y_min", "y_max", "z_min", "z_max"}) {

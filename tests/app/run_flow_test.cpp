@@ -72,6 +72,44 @@ TEST(RunFlow, WhatIsHeldStaysAndSpinsGoOn) {
     EXPECT_LT(numbers(steps, "torque_z_ball").back(), 0);
 }
 
+TEST(RunFlow, ABallLandsAndRestsBitByBit) {
+    const TemporaryFolder folder;
+    const std::string near = replaced(ball, "0.9]", "0.22]");
+    const auto landing = [&](double end, int steps) {
+        return replaced(falling(end, steps), ball, near) + "[contact]\n";
+    };
+    write(folder.path / "a.toml", landing(1.2, 8));
+    write(folder.path / "part.toml", landing(0.9, 6));  // until it touches
+    const Outcome it = kropla_program(folder, "run a.toml --out whole");
+    ASSERT_EQ(it.code, 0) << it.err;
+    EXPECT_NE(it.out.find("warning: body \"ball\" touches the wall z min at ("), std::string::npos) << it.out;
+    ASSERT_EQ(kropla_program(folder, "run part.toml --out d").code, 0);
+    ASSERT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
+    EXPECT_EQ(lasting_columns(folder.path / "d"), lasting_columns(folder.path / "whole"));
+
+    const Table steps = read_table(folder.path / "whole/steps.csv");
+    const std::vector<double> gap = numbers(steps, "gap_ball"), force = numbers(steps, "contact_force_z_ball"),
+                              contacts = numbers(steps, "contacts"), w = numbers(steps, "w_ball");
+    const double allowed = parse_case(landing(1.2, 8), "a.toml").contact->gap;
+    for (std::size_t n = 0; n < gap.size(); ++n) EXPECT_GE(gap[n], allowed * (1 - 1e-6));
+    EXPECT_EQ(contacts.front(), 0);
+    EXPECT_EQ(contacts.back(), 1);
+    EXPECT_NEAR(gap.back(), allowed, 1e-6 * allowed);
+    EXPECT_NEAR(w.back(), 0, 1e-7);
+    EXPECT_GT(force[gap.size() - 4], 0);  // of lubrication alone
+    // At rest the floor carries what the flow does not, which comes to rest too.
+    const double weight = 3 * numbers(steps, "volume_ball").back();
+    EXPECT_NEAR(force.back() + numbers(steps, "force_z_ball").back(), weight, 1e-3 * weight);
+}
+
+TEST(RunFlow, ABodyMayNotBeginNearerThanItMayCome) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", replaced(falling(1, 5), "0.9]", "0.2]") + "[contact]\ngap = 0.055\n");
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(it.code, 2);
+    expect_one_line(it.err, "body \"ball\" begins 0.05 m from what is nearest to it, less than contact.gap = 0.055 m");
+}
+
 TEST(RunFlow, CarriesHeatAndSpecies) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", blown);

@@ -134,6 +134,21 @@ TEST(ResultsPage, ShowsAFlowWithoutItsNoise) {
     EXPECT_TRUE(has(draw_results(results_of(flow_files(turning)), ""), "Spin of a about x [rad/s]"));
 }
 
+TEST(ResultsPage, ShowsContacts) {
+    std::string steps = flow_text;
+    steps.insert(steps.find("\n1,"), ",gap_a [m],contact_force_x_a [N],contact_force_y_a [N],contact_force_z_a [N],contacts");
+    steps.insert(steps.find("\n2,"), ",0.5,0,0,0,0");
+    steps.insert(steps.size() - 1, ",0.25,0,0,3,1");
+    const RunResults results = results_of(flow_files(steps));
+    EXPECT_EQ(results.bodies[0].gap, (std::vector<double>{0.5, 0.25}));
+    const std::string html = draw_results(results, "");
+    for (const char* part : {"<td>a</td><td>250 mm</td><td>250 mm</td><td>3 N</td>",
+                             "The first touch is in the step that ends at 3 s; there are touches in 1 of 2 steps.",
+                             "Gap to what is nearest of a", "Force of contacts on a along z [N]"})
+        EXPECT_TRUE(has(html, part)) << part << "\n" << html;
+    EXPECT_FALSE(has(draw_results(results_of(flow_files(flow_text)), ""), "Contacts"));
+}
+
 TEST(ResultsPage, CallsAnErrorWhatIsOne) {
     std::string leaking = steps_text;
     leaking.replace(leaking.find("107.5"), 5, "106.5");
