@@ -40,6 +40,10 @@ const std::vector<Problem> flow = {
     {"sphere in a cube", drag_in_cube},
     {"sphere to the floor", way_to_floor},
     {"sphere that swings", swinging_sphere},
+    {"sphere in a stream, Re 20", [](const Ranks& r, int f) { return sphere_in_stream(r, stream_20, f); }},
+    {"sphere in a stream, Re 50", [](const Ranks& r, int f) { return sphere_in_stream(r, stream_50, f); }},
+    {"sphere in a stream, Re 100", [](const Ranks& r, int f) { return sphere_in_stream(r, stream_100, f); }},
+    {"sphere in a stream, Re 200", [](const Ranks& r, int f) { return sphere_in_stream(r, stream_200, f); }},
 };
 
 void print_rows(const Problem& problem, int fineness, const Outcome& outcome) {

@@ -28,4 +28,13 @@ namespace kropla {
 /// of a period before it, over the second of two periods.
 [[nodiscard]] Outcome swinging_sphere(const Ranks& ranks, int fineness);
 
+/// A sphere of diameter 1 m that is held in a stream of 1 m/s in a wide box: its drag, the length of its wake and the angle
+/// from its front at which the flow leaves it (none: 0), and the heat that it gives off, held at one temperature.
+struct KnownStream {
+    double reynolds, drag, wake, angle, nusselt;
+};
+inline constexpr KnownStream stream_20{20, 2.719, 0, 0, 4.019}, stream_50{50, 1.576, 0.406, 139.2, 5.395},
+    stream_100{100, 1.0882, 0.869, 126.8, 6.903}, stream_200{200, 0.7707, 1.435, 116.3, 9.115};
+[[nodiscard]] Outcome sphere_in_stream(const Ranks& ranks, const KnownStream& known, int fineness);
+
 }  // namespace kropla
