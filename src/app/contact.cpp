@@ -188,12 +188,13 @@ private:
             if (const auto free = free_of(contact.who.other)) {
                 contact.sides.push_back(side_of(*free, contact.facing.on_b, -n));
             } else {
+                constexpr double within = 0.01;  // [-] of the step: motions may have no meaning before the run
                 const auto told = [&](double t) {
                     const RigidVelocity v = velocity_of(domain_.bodies[contact.who.other], t, dt_);
                     return -dot(n, v.velocity + cross(v.spin, contact.facing.on_b - v.centre));
                 };
                 contact.met = told(t_ + dt_);
-                contact.before = told(t_);
+                contact.before = told(t_ + within * dt_);
             }
         }
         std::vector<SixVector> force(bodies_.size(), SixVector{});
