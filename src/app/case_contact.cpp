@@ -12,8 +12,8 @@ namespace {
 
 constexpr double reach_in_sizes = 0.5;  // from this gap on, the mesh resolves the flow in it
 // The gap by default, beside how far polyhedra stand out of their shapes: a quarter more than that in which a flat tet is as
-// bad as the limit, 0.25 sizes for a limit of 10. By measurement (spheres of 1.3 to 5 sizes that come to a wall or another and
-// pass along it) R/r is at most 7 then; at 0.2 sizes it was up to 8.4, at 0.3 less than 6.
+// bad as the limit, 0.25 sizes for a limit of 10. By measurement (spheres of 1.3 to 5 sizes in radius that come to a
+// wall and go along it) R/r is about 7 at most then; at 0.2 sizes it was up to 8.3, at 0.3 less than 6.
 constexpr double above_limit = 1.25;
 
 /// The least gap that the layers of prisms take [m]; none: 0.

@@ -25,24 +25,19 @@ SixVector difference(SixVector a, const SixVector& b) {
     add(a, -1, b);
     return a;
 }
-SixVector times(const SixMatrix& m, const SixVector& v) {
-    SixVector result;
-    for (std::size_t i = 0; i < 6; ++i) result[i] = product(m[i], v);
-    return result;
-}
 SixVector motion_at_begin(const RigidStep& step) { return both(step.begin().velocity, step.begin().spin); }
 
 /// One of two that face each other: a free body.
 struct Side {
     std::size_t free = 0;  // among the free bodies
     SixVector along = {};  // by it a force along the normal acts on the body, and its velocity on the gap
-    SixVector gained = {};  // [1/kg] of rate by a unit of force
 };
 
 struct Contact {
     ContactPair who;
     Facing facing = {};
     std::vector<Side> sides = {};  // one or two
+    std::vector<SixVector> gained = {};  // [1/kg] of rate by a unit of force, per free body
     double mobility = 0;        // [1/kg] rate of the gap's rate by a unit of force
     double met = 0;             // [m/s] rate of the gap by what goes as it is told, at the end of the step
     double before = 0;          // [m/s] rate of the gap at the step's begin
@@ -55,9 +50,10 @@ struct Contact {
 /// Contacts and rates at which all equations hold that Newton's method has.
 class Problem {
 public:
-    Problem(const Domain& domain, const ContactOptions& options, double viscosity, const FreeSteps& bodies, double t, double dt,
-            const std::set<ContactPair>& touched)
-        : domain_(domain), options_(options), viscosity_(viscosity), bodies_(bodies), t_(t), dt_(dt), touched_(touched) {}
+    Problem(const Domain& domain, const ContactOptions& options, double viscosity, const FreeSteps& bodies,
+            const JointResponse& response, double t, double dt, const std::set<ContactPair>& touched)
+        : domain_(domain), options_(options), viscosity_(viscosity), bodies_(bodies), response_(response), t_(t), dt_(dt),
+          touched_(touched) {}
 
     /// Of what is left of the equations now.
     Contacts::Solution solve() {
@@ -90,18 +86,17 @@ public:
 private:
     /// Without contacts; `of_flow`: with the response of the flow as it was learnt.
     void start(bool of_flow) {
-        resistance_.clear();
-        without_.clear();
-        rates_.clear();
+        of_flow_ = of_flow;
         leaps_.clear();
         contacts_.clear();
+        std::vector<SixVector> left;
         for (const auto& [body, step] : bodies_) {
-            resistance_.push_back(step.resistance(of_flow));
-            without_.push_back(step.rate());
-            add(without_.back(), 1, solved(resistance_.back(), step.left()));
-            rates_.push_back(without_.back());
+            left.push_back(step.left());
             leaps_.push_back(step.leap());
         }
+        without_ = response_.solved_for(bodies_, left, of_flow);
+        for (std::size_t i = 0; i < bodies_.size(); ++i) add(without_[i], 1, bodies_[i].second.rate());
+        rates_ = without_;
     }
 
     /// Until bodies stay where they are; false if the response of the flow is none: it would pull what is pushed.
@@ -178,7 +173,6 @@ private:
         const RigidStep& step = tried_[free];
         Side side{.free = free, .along = both(normal, cross(place - step.velocity(t_ + dt_).centre, normal))};
         for (std::size_t i = 0; i < 6; ++i) side.along[i] *= step.freedom()[i];
-        side.gained = solved(resistance_[free], side.along);
         return side;
     }
 
@@ -194,17 +188,21 @@ private:
             if (const auto free = free_of(contact.who.other)) {
                 contact.sides.push_back(side_of(*free, contact.facing.on_b, -n));
             } else {
+                constexpr double within = 0.01;  // [-] of the step: motions may have no meaning before the run
                 const auto told = [&](double t) {
                     const RigidVelocity v = velocity_of(domain_.bodies[contact.who.other], t, dt_);
                     return -dot(n, v.velocity + cross(v.spin, contact.facing.on_b - v.centre));
                 };
                 contact.met = told(t_ + dt_);
-                contact.before = told(t_);
+                contact.before = told(t_ + within * dt_);
             }
         }
+        std::vector<SixVector> force(bodies_.size(), SixVector{});
+        for (const Side& side : contact.sides) force[side.free] = side.along;
+        contact.gained = response_.solved_for(bodies_, force, of_flow_);
         contact.mobility = 0;
         for (const Side& side : contact.sides) {
-            contact.mobility += product(side.along, side.gained);
+            contact.mobility += product(side.along, contact.gained[side.free]);
             contact.before += product(side.along, motion_at_begin(bodies_[side.free].second));
         }
     }
@@ -228,11 +226,13 @@ private:
     void sum_up() {
         rates_ = without_;
         std::ranges::fill(leaps_, SixVector{});
-        for (const Contact& contact : contacts_) {
-            for (const Side& side : contact.sides) {
-                add(rates_[side.free], contact.force, side.gained);
-                add(leaps_[side.free], dt_ * contact.leap, side.gained);
-            }
+        for (const Contact& contact : contacts_) push(contact, contact.force, contact.leap);
+    }
+
+    void push(const Contact& contact, double force, double leap) {
+        for (std::size_t i = 0; i < rates_.size(); ++i) {
+            add(rates_[i], force, contact.gained[i]);
+            add(leaps_[i], dt_ * leap, contact.gained[i]);
         }
     }
 
@@ -271,10 +271,7 @@ private:
         }
         const double force = (end - alone) / per_force;
         const double force_change = force - contact.force, leap_change = leap - contact.leap;
-        for (const Side& side : contact.sides) {
-            add(rates_[side.free], force_change, side.gained);
-            add(leaps_[side.free], dt_ * leap_change, side.gained);
-        }
+        push(contact, force_change, leap_change);
         contact.force = force;
         contact.leap = leap;
         return std::max(std::abs(force_change), std::abs(leap_change));
@@ -314,10 +311,11 @@ private:
     const ContactOptions& options_;
     double viscosity_;
     const FreeSteps& bodies_;
+    const JointResponse& response_;
     double t_, dt_;
+    bool of_flow_ = true;  // with the response as it was learnt
     const std::set<ContactPair>& touched_;
-    std::vector<SixMatrix> resistance_;        // per free body
-    std::vector<SixVector> without_, rates_, leaps_;  // likewise: rates without contacts; as found so far
+    std::vector<SixVector> without_, rates_, leaps_;  // per free body: rates without contacts; as found so far
     std::vector<RigidStep> tried_;             // bodies at what was found in the round before
     std::vector<Contact> contacts_;
 };
@@ -329,27 +327,34 @@ double unresolved_resistance(double viscosity, double squeezed, double gap, doub
 }
 
 Contacts::Contacts(const Domain& domain, const ContactOptions& options, double viscosity, FreeSteps& bodies, double t, double dt)
-    : domain_(domain), options_(options), viscosity_(viscosity), bodies_(bodies), t_(t), dt_(dt) {}
+    : domain_(domain), options_(options), viscosity_(viscosity), bodies_(bodies), t_(t), dt_(dt),
+      response_(domain, bodies) {}
 
 void Contacts::guess() {
     ContactOptions of_touch = options_;
     of_touch.lubrication = false;  // the rate of the step before knows of it
-    found_ = Problem(domain_, of_touch, viscosity_, bodies_, t_, dt_, touched_).solve();
-    if (!found_.contacts.empty()) improve();
-    touched_.clear();
+    found_ = Problem(domain_, of_touch, viscosity_, bodies_, response_, t_, dt_, touched_).solve();
+    if (found_.contacts.empty()) return;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].second.go(found_.rates[i], found_.leaps[i]);
 }
 
 double Contacts::settle() {
-    found_ = Problem(domain_, options_, viscosity_, bodies_, t_, dt_, touched_).solve();
+    response_.learn(bodies_);
+    found_ = Problem(domain_, options_, viscosity_, bodies_, response_, t_, dt_, touched_).solve();
+    std::vector<SixVector> changes;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const RigidStep& step = bodies_[i].second;
+        changes.push_back(difference(found_.rates[i], step.rate()));
+        add(changes.back(), 1 / dt_, difference(found_.leaps[i], step.leap()));
+    }
+    const std::vector<SixVector> left = response_.taken(bodies_, changes, true);
     double missed = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const auto& [body, step] = bodies_[i];
         double pushed = 0;
         for (const ContactForce& contact : found_.contacts)
             if (contact.who.body == body || (contact.who.wall < 0 && contact.who.other == body)) pushed += norm(contact.force);
-        SixVector change = difference(found_.rates[i], step.rate());
-        add(change, 1 / dt_, difference(found_.leaps[i], step.leap()));
-        missed = std::max(missed, step.share(times(step.resistance(), change), pushed));
+        missed = std::max(missed, step.share(left[i], pushed));
     }
     return missed;
 }
@@ -357,11 +362,12 @@ double Contacts::settle() {
 void Contacts::improve() {
     for (const ContactForce& contact : found_.contacts)
         if (contact.touches) touched_.insert(contact.who);
+    response_.remember(bodies_, found_.rates, found_.leaps);
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].second.go(found_.rates[i], found_.leaps[i]);
 }
 
 ContactReport Contacts::report() const {
-    ContactReport report{found_.contacts, Problem(domain_, options_, viscosity_, bodies_, t_, dt_, touched_).least_gaps(),
+    ContactReport report{found_.contacts, Problem(domain_, options_, viscosity_, bodies_, response_, t_, dt_, touched_).least_gaps(),
                          std::vector<Vec3>(domain_.bodies.size())};
     for (const ContactForce& contact : found_.contacts) {
         report.forces[contact.who.body] += contact.force;

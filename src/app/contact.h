@@ -1,12 +1,10 @@
 #pragma once
 
-#include "app/rigid_motion.h"
+#include "app/joint_response.h"
 #include <kropla/domain/domain.h>
 
 #include <cstddef>
-#include <deque>
 #include <set>
-#include <utility>
 #include <vector>
 
 namespace kropla {
@@ -61,9 +59,6 @@ struct ContactReport {
     std::vector<Vec3> forces;  // [N] per body of the domain
 };
 
-/// The step of each body that is free, by its number in the domain.
-using FreeSteps = std::deque<std::pair<std::size_t, RigidStep>>;
-
 /// What contacts do in a step from t [s] on for dt. Domain and bodies outlive it.
 class Contacts {
 public:
@@ -90,6 +85,7 @@ private:
     double viscosity_;
     FreeSteps& bodies_;
     double t_, dt_;
+    JointResponse response_;
     std::set<ContactPair> touched_;  // in this step: in question until it is over, so that rounds come to an end
     Solution found_;
 };

@@ -138,7 +138,6 @@ SixVector RigidStep::missing(const Vec3& force, const Vec3& torque) const {
 
 double RigidStep::take(const Vec3& force, const Vec3& torque) {
     missing_ = missing(force, torque);
-    taken_ = true;
     if (last_rate_) {  // Broyden's update: what was missing changed by the response and the inertia, times the change
         SixVector step, seen;
         double square = 0;
@@ -196,21 +195,11 @@ void RigidStep::improve() {
 }
 
 void RigidStep::go(const SixVector& rate, const SixVector& leap) {
-    constexpr double same = 1e-2;  // [-] of the change of the rate: what a change of the leap leaves to be learnt from
-    const double length = std::cbrt(body_.mass / motion_.density);
-    double rate_change = 0, leap_change = 0;
-    for (std::size_t i = 0; i < 6; ++i) {
-        rate_change = std::max(rate_change, (i < 3 ? 1 : length) * std::abs(rate[i] - rate_[i]) * dt_);
-        leap_change = std::max(leap_change, (i < 3 ? 1 : length) * std::abs(leap[i] - leap_[i]));
-    }
-    last_rate_.reset();
-    if (taken_ && leap_change <= same * rate_change) {
-        last_rate_ = rate_;
-        last_missing_ = missing_;
-    }
     rate_ = rate;
     leap_ = leap;
     leaps_ = leap_ != SixVector{};
 }
+
+double RigidStep::length() const { return std::cbrt(body_.mass / motion_.density); }
 
 }  // namespace kropla

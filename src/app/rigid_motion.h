@@ -89,8 +89,11 @@ public:
     /// A force with its torque as a share of all that acts; `contact` [N] is what contacts do.
     [[nodiscard]] double share(const SixVector& wrench, double contact) const;
     /// Tries a rate, and a leap of the velocity at the step's begin, which is gone again at its end: bodies that touch go
-    /// otherwise than evenly. What the flow answers to another leap than the one before tells nothing of its response.
+    /// otherwise than evenly. Nothing is learnt from that but by others, who may tell what they `know` of the response.
     void go(const SixVector& rate, const SixVector& leap);
+    void know(const SixMatrix& response) { state_.response = response; }
+    [[nodiscard]] double length() const;  // [m] of the size of the body
+    [[nodiscard]] double dt() const { return dt_; }
 
 private:
     [[nodiscard]] double scaled(const SixVector& wrench, double acting) const;
@@ -104,7 +107,6 @@ private:
     SixVector rate_;
     SixVector leap_ = {};   // [m/s], [rad/s] at the begin
     bool leaps_ = false;    // else `leap_` is zero
-    bool taken_ = false;    // what the flow does at a rate that was tried
     double acting_ = 0;     // [N] in all, of the flow and gravity
     std::optional<SixVector> last_rate_;   // tried before
     SixVector last_missing_ = {}, missing_ = {};

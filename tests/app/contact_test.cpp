@@ -237,6 +237,33 @@ TEST(Contact, AnEllipsoidTipsOverOnTheFloor) {
     EXPECT_NEAR(world.states[0].spin.z, 0, 1e-10);
 }
 
+// The flow takes the one along with the other: their resistances to going apart are far above their masses.
+TEST(Contact, BodiesThatAreNearLearnFromEachOther) {
+    for (const double apart : {1.2, 3.0}) {  // near; and too far to be asked, where each takes for its own what both do
+        World world;
+        world.add(ball({0, 0, 5}, 0.5));
+        world.add(ball({0.1, 0, 5 + apart}, 0.5));
+        FreeSteps steps;
+        for (std::size_t body = 0; body < 2; ++body) {
+            steps.emplace_back(body, RigidStep({.density = 2}, world.states[body], world.weigh(body), world.now(body).centre,
+                                               world.gravity, 0, 0.1));
+            steps.back().second.guess_response(1, 0.1);
+        }
+        Contacts contacts(world.domain, dry, 0, steps, 0, 0.1);
+        contacts.guess();
+        int rounds = 1;
+        for (;; ++rounds) {
+            const auto velocity = [&](std::size_t body) { return steps[body].second.end().velocity; };
+            const Vec3 slip = velocity(0) - velocity(1);
+            (void)steps[0].second.take(Vec3{0, 0, 5} - 200 * slip - 2 * velocity(0), {});
+            (void)steps[1].second.take(200 * slip - 3 * velocity(1), {});
+            if (contacts.settle() < 1e-6 || rounds == 60) break;
+            contacts.improve();
+        }
+        EXPECT_TRUE(apart < 2 ? rounds <= 8 : rounds == 60) << rounds;
+    }
+}
+
 TEST(Contact, AWallThatComesPushes) {
     World world;
     world.gravity = {};

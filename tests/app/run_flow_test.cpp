@@ -102,6 +102,38 @@ TEST(RunFlow, ABallLandsAndRestsBitByBit) {
     EXPECT_NEAR(force.back() + numbers(steps, "force_z_ball").back(), weight, 1e-3 * weight);
 }
 
+/// The drag of a sphere on its slow way to a wall, by that in an unbounded liquid; `gap` is by its radius [Brenner 1961].
+double drag_at_wall(double gap) {
+    const double alpha = std::acosh(1 + gap);
+    double sum = 0;
+    for (int n = 1; n * alpha < 30; ++n) {
+        const double above = 2 * std::sinh((2 * n + 1) * alpha) + (2 * n + 1) * std::sinh(2 * alpha);
+        const double below = 4 * std::pow(std::sinh((n + 0.5) * alpha), 2) - std::pow((2 * n + 1) * std::sinh(alpha), 2);
+        sum += n * (n + 1.0) / ((2 * n - 1) * (2 * n + 3)) * (above / below - 1);
+    }
+    return 4.0 / 3 * std::sinh(alpha) * sum;
+}
+
+TEST(RunFlow, ASphereNearsTheFloorAsLubricationLetsIt) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml",
+          "[domain]\nmin = [-12, -12, 0]\nmax = [12, 12, 16]\n[size]\nsurface = 0.4\ngrowth = 0.3\nfar = 4\n[time]\nend = 25\n"
+          "steps = 5\n[[body]]\nname = \"ball\"\nshape = \"sphere\"\ncentre = [0, 0, 1.155]\nradius = 1\n[body.motion]\n"
+          "kind = \"free\"\ndensity = 2\n[flow]\ngravity = [0, 0, -0.045]\nconvection = false\n"
+          "[flow.region.surroundings]\ndensity = 1\nviscosity = 2\n[contact]\n");
+    const auto speed_by_known = [&](const std::string& set) {
+        const Outcome it = kropla_program(folder, "run a.toml --out d --force " + set);
+        EXPECT_EQ(it.code, 0) << it.err;
+        const Table steps = read_table(folder.path / "d/steps.csv");
+        const double speed = -numbers(steps, "w_ball").back(), pi = std::acos(-1.0);
+        const double gap = numbers(steps, "gap_ball").back() + 0.5 * numbers(steps, "dt").back() * speed;  // half-way
+        const double weight = 4.0 / 3 * pi * 0.045;  // less buoyancy
+        return speed / (weight / (6 * pi * 2 * drag_at_wall(gap)));
+    };
+    EXPECT_NEAR(speed_by_known(""), 1.03, 0.05);  // on so coarse a mesh
+    EXPECT_GT(speed_by_known("--set contact.lubrication=false"), 1.2);
+}
+
 TEST(RunFlow, ABodyMayNotBeginNearerThanItMayCome) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", replaced(falling(1, 5), "0.9]", "0.2]") + "[contact]\ngap = 0.055\n");
