@@ -206,7 +206,7 @@ private:
 
     /// About the guess. Returns by how much the solution differs from it, by the largest temperature.
     double solve_once() {
-        ask_cells(pattern_.cells, [&](const auto& cell) { return cell_system(step_, cell); },
+        ask_cells(pattern_.cells, HeatKernel{step_},
                   [&](const auto& cell) { return !linear_ || systems_are_to_change(cell); }, systems_, ranks_.watch);
         assemble();
         heed(ranks_);  // a rank that was stopped in there is met before anything is done together
