@@ -10,6 +10,13 @@
 #define KROPLA_FOR_EACH_PROCESSOR
 #endif
 
+/// Besides: so is all that it calls. Clang has not both.
+#if defined(__clang__)
+#define KROPLA_WITH_ITS_CALLS
+#else
+#define KROPLA_WITH_ITS_CALLS [[gnu::flatten]]
+#endif
+
 namespace kropla {
 
 /// Four numbers, on which arithmetic works at once; each with the bits that it would have by itself.

@@ -47,7 +47,7 @@ using CellPoints = std::array<CellPoint<n, Number>, points_of_cell<n>>;
 /// The only point of a tet: its volume and dV/dx_i, a third of the area vector of the facet opposite corner i, pointing to
 /// that corner; from differences to corner 0 alone, so that the rounding error is relative to the cell's size.
 template <class Number>
-[[nodiscard]] CellPoint<4, Number> linear_tet(const std::array<Vector3<Number>, 4>& x) {
+[[nodiscard]] [[gnu::always_inline]] inline CellPoint<4, Number> linear_tet(const std::array<Vector3<Number>, 4>& x) {
     constexpr double sixth = 1.0 / 6;
     const Vector3<Number> a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
     const Vector3<Number> g1 = sixth * cross(b, c), g2 = sixth * cross(c, a), g3 = sixth * cross(a, b);

@@ -312,7 +312,7 @@ Array<Region, Enthalpy> enthalpy_curves(const HeatOptions& options) {
     return curves;
 }
 
-KROPLA_FOR_EACH_PROCESSOR [[gnu::flatten]]
+KROPLA_FOR_EACH_PROCESSOR KROPLA_WITH_ITS_CALLS
 CellSystem<4> cell_system(const HeatStep& step, Tet t) {
     return system_of(gather<4>(step, t));
 }
@@ -321,7 +321,7 @@ CellSystem<6> cell_system(const HeatStep& step, const Prism& prism) {
     return system_of(gather<6>(step, prism));
 }
 
-KROPLA_FOR_EACH_PROCESSOR [[gnu::flatten]]
+KROPLA_FOR_EACH_PROCESSOR KROPLA_WITH_ITS_CALLS
 void cell_systems(const HeatStep& step, const std::array<Tet, 4>& tets, const FourPlaces& systems) {
     const FourTets cells = {gather<4>(step, tets[0]), gather<4>(step, tets[1]), gather<4>(step, tets[2]),
                             gather<4>(step, tets[3])};

@@ -4,9 +4,12 @@
 #include <kropla/simulate/petsc.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace kropla {
+
+struct Pattern;
 
 /// How the material of regions that do not go with the mesh flows during a step: u = velocity + grad Phi.
 struct MaterialFlow {
@@ -21,6 +24,8 @@ struct MaterialFlow {
     Array<Vertex, Vec3> velocity = {};               // [m/s] that was solved for; empty: none
     std::vector<Through> through = {};
     int iterations = 0;  // of the solver; 0 if nothing had to be solved
+    /// Of all cells of the mesh that it was solved on, for what else is solved there; empty if nothing had to be.
+    std::shared_ptr<const Pattern> pattern = {};
 };
 
 /// The least flow of an incompressible gas beside `velocity` (empty: at rest) which makes way for bodies during the step

@@ -61,7 +61,8 @@ void put(const std::vector<double>& values, Vec vector) {
 /// The entries of all ranks, on every rank.
 class Gathering {
 public:
-    explicit Gathering(Vec vector) {
+    Gathering(const Ranks& ranks, Vec vector) {
+        if (ranks.count == 1) return;  // they are all there
         VecScatter scatter = nullptr;
         Vec everywhere = nullptr;
         check(VecScatterCreateToAll(vector, &scatter, &everywhere));
@@ -69,18 +70,23 @@ public:
         everywhere_.reset(everywhere);
     }
     std::vector<double> operator()(Vec vector) const {
+        if (!scatter_) return copy_of(vector);
         check(VecScatterBegin(scatter_.get(), vector, everywhere_.get(), INSERT_VALUES, SCATTER_FORWARD));
         check(VecScatterEnd(scatter_.get(), vector, everywhere_.get(), INSERT_VALUES, SCATTER_FORWARD));
-        PetscInt size = 0;
-        check(VecGetSize(everywhere_.get(), &size));
-        const double* values = nullptr;
-        check(VecGetArrayRead(everywhere_.get(), &values));
-        std::vector<double> copy(values, values + size);
-        check(VecRestoreArrayRead(everywhere_.get(), &values));
-        return copy;
+        return copy_of(everywhere_.get());
     }
 
 private:
+    static std::vector<double> copy_of(Vec vector) {
+        PetscInt size = 0;
+        check(VecGetSize(vector, &size));
+        const double* values = nullptr;
+        check(VecGetArrayRead(vector, &values));
+        std::vector<double> copy(values, values + size);
+        check(VecRestoreArrayRead(vector, &values));
+        return copy;
+    }
+
     OwnedScatter scatter_;
     OwnedVec everywhere_;
 };
@@ -157,19 +163,31 @@ double largest_size(const std::vector<double>& values) {
 }
 
 struct Residual {
-    std::vector<double> rest;  // b - A x per owned row
-    double largest;            // of their sizes, over all ranks
-    double backward_error;     // [-] over all ranks
+    std::vector<double> rest;    // b - A x per owned row
+    std::vector<double> size;    // what it is measured against, but for the row's sum
+    double largest = 0;          // of the sizes of `rest`, over all ranks
+    double backward_error = 0;   // [-] over all ranks
 };
 
-Residual residual(const Ranks& ranks, const LinearSystem& system, const DoubledUnknown& x) {
+/// Measures what is left.
+void measure(const Ranks& ranks, const LinearSystem& system, const DoubledUnknown& x, Residual& left) {
     const double most = largest_size(x.high);
     double error = 0, most_left = 0;
-    std::vector<double> rest(system.right.size());
-    for (std::size_t r = 0; r < rest.size(); ++r) {
+    for (std::size_t r = 0; r < left.rest.size(); ++r) {
+        const double rest = std::abs(left.rest[r]), size = left.size[r] + std::abs(system.row_sum[r]) * most;
+        most_left = std::max(most_left, rest);
+        if (rest != 0) error = std::max(error, std::isfinite(rest) ? rest / size : INFINITY);
+    }
+    left.largest = largest(ranks, most_left);
+    left.backward_error = largest(ranks, error);
+}
+
+Residual residual(const Ranks& ranks, const LinearSystem& system, const DoubledUnknown& x) {
+    Residual left{std::vector<double>(system.right.size()), std::vector<double>(system.right.size())};
+    for (std::size_t r = 0; r < left.rest.size(); ++r) {
         const std::size_t own = static_cast<std::size_t>(system.rows.first_row) + r;
         double sum = system.right[r] - system.row_sum[r] * x.high[own] - system.row_sum[r] * x.low[own];
-        double size = std::abs(system.right[r]) + std::abs(system.row_sum[r]) * most + system.negligible[r];
+        double size = std::abs(system.right[r]) + system.negligible[r];
         for (PetscInt k = system.rows.begin[r]; k < system.rows.begin[r + 1]; ++k) {
             const auto place = static_cast<std::size_t>(k);
             const double exchanged =
@@ -177,11 +195,11 @@ Residual residual(const Ranks& ranks, const LinearSystem& system, const DoubledU
             sum -= exchanged;
             size += std::abs(exchanged);
         }
-        rest[r] = sum;
-        most_left = std::max(most_left, std::abs(sum));
-        if (sum != 0) error = std::max(error, std::isfinite(sum) ? std::abs(sum) / size : INFINITY);
+        left.rest[r] = sum;
+        left.size[r] = size;
     }
-    return {std::move(rest), largest(ranks, most_left), largest(ranks, error)};
+    measure(ranks, system, x, left);
+    return left;
 }
 
 /// A pass got nowhere.
@@ -227,7 +245,7 @@ public:
         : treatment_(treatment),
           right_(make_vector(ranks, rows.count())),
           unknown_(make_vector(ranks, rows.count())),
-          gathering_(unknown_.get()),
+          gathering_(ranks, unknown_.get()),
           matrix_(ranks, rows, all_rows()) {
         KSP solver = nullptr;
         check(KSPCreate(ranks.communicator, &solver));
@@ -419,13 +437,15 @@ void balance(const Ranks& ranks, const LinearSystem& system, DoubledUnknown& x, 
     const double missing = total(ranks, left.rest) / held;
     if (!std::isfinite(missing)) return;
     for (std::size_t r = 0; r < x.high.size(); ++r) x.add(r, missing);
-    left = residual(ranks, system, x);
+    for (std::size_t r = 0; r < left.rest.size(); ++r) left.rest[r] -= system.row_sum[r] * missing;  // no difference changed
+    measure(ranks, system, x, left);
 }
 
 std::vector<double> everywhere(const Ranks& ranks, const std::vector<double>& mine) {
+    if (ranks.count == 1) return mine;
     const OwnedVec vector = make_vector(ranks, mine.size());
     put(mine, vector.get());
-    return Gathering(vector.get())(vector.get());
+    return Gathering(ranks, vector.get())(vector.get());
 }
 
 }  // namespace
