@@ -257,7 +257,7 @@ Matrix coarser(const Matrix& a, const Interpolation& p, PetscInt columns) {
 }
 
 /// The sum over entries from `k` up to `end`.
-double sum_of(const Matrix& a, PetscInt k, PetscInt end, const double* x) {
+[[gnu::always_inline]] inline double sum_of(const Matrix& a, PetscInt k, PetscInt end, const double* x) {
     const PetscInt* const column = a.column.data();
     const double* const value = a.value.data();
     double even = 0, odd = 0;  // two sums, so that neither has to wait for the other
