@@ -10,6 +10,13 @@
 #define KROPLA_FOR_EACH_PROCESSOR
 #endif
 
+/// Besides: so is all that it calls. Clang has not both.
+#if defined(__clang__)
+#define KROPLA_WITH_ITS_CALLS
+#else
+#define KROPLA_WITH_ITS_CALLS [[gnu::flatten]]
+#endif
+
 namespace kropla {
 
 /// Four numbers, on which arithmetic works at once; each with the bits that it would have by itself.
@@ -28,6 +35,10 @@ struct alignas(32) Four {
     friend Four operator-(const Four& a, const Four& b) { return Four(a.all - b.all); }
     friend Four operator*(const Four& a, const Four& b) { return Four(a.all * b.all); }
     friend Four operator/(const Four& a, const Four& b) { return Four(a.all / b.all); }
+    friend Four operator-(const Four& a) { return Four(-a.all); }
+    Four& operator+=(const Four& b) { return all += b.all, *this; }
+    Four& operator-=(const Four& b) { return all -= b.all, *this; }
+    Four& operator*=(const Four& b) { return all *= b.all, *this; }
 };
 
 inline Four greater(const Four& a, const Four& b) { return Four(a.all > b.all ? a.all : b.all); }
@@ -37,6 +48,19 @@ inline Four square_root(const Four& a) {
     for (std::size_t i = 0; i < 4; ++i) root.all[i] = std::sqrt(a.all[i]);
     return root;
 }
+
+inline Four size(const Four& a) { return greater(a, -a); }
+
+/// `then` where a > 0, elsewhere zero.
+inline Four where_positive(const Four& a, const Four& then) {
+    const Four zero;
+    return Four(a.all > zero.all ? then.all : zero.all);
+}
+
+/// The same of one number, to the same bits.
+inline double square_root(double a) { return std::sqrt(a); }
+inline double size(double a) { return std::abs(a); }
+inline double where_positive(double a, double then) { return a > 0 ? then : 0; }
 
 /// Is a > b in all four?
 inline bool all_greater(const Four& a, const Four& b) {

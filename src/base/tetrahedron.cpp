@@ -22,8 +22,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-inline double square_root(double a) { return std::sqrt(a); }
-using kropla::square_root;
 
 template <class Number>
 struct Shape {

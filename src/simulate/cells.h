@@ -45,10 +45,10 @@ template <std::size_t n, class T>
     return at;
 }
 
-template <std::size_t n>
-[[nodiscard]] double mean_of(const std::array<double, n>& values) {
-    double sum = 0;
-    for (double value : values) sum += value;
+template <std::size_t n, class Number>
+[[nodiscard]] Number mean_of(const std::array<Number, n>& values) {
+    Number sum = 0;
+    for (const Number& value : values) sum += value;
     return sum / static_cast<double>(n);
 }
 

@@ -14,28 +14,6 @@ Vec3 between(const Vec3& a, const Vec3& b, double s) {
     return (1 - s) * a + s * b;
 }
 
-/// Seen from corner 0.
-template <std::size_t n>
-Corners<n> from_first(const Corners<n>& x) {
-    Corners<n> r;
-    for (std::size_t i = 0; i < n; ++i) r[i] = x[i] - x[0];
-    return r;
-}
-
-template <std::size_t n>
-VolumeGradients<n> mean_over_step(const Corners<n>& x0, const Corners<n>& x1) {
-    const Corners<n> r0 = from_first(x0), r1 = from_first(x1);
-    VolumeGradients<n> mean = {};
-    for (double time : gauss_points) {
-        Corners<n> r;
-        for (std::size_t i = 0; i < n; ++i) r[i] = between(r0[i], r1[i], time);
-        const CellPoints<n> points = cell_points(r);
-        for (std::size_t k = 0; k < points.size(); ++k)
-            for (std::size_t i = 0; i < n; ++i) mean[k][i] += 0.5 * points[k].volume_gradient[i];
-    }
-    return mean;
-}
-
 }  // namespace
 
 CellPoints<6> cell_points(const Corners<6>& x) {
@@ -58,12 +36,16 @@ CellPoints<6> cell_points(const Corners<6>& x) {
     return points;
 }
 
-VolumeGradients<4> mean_volume_gradients(const Corners<4>& x0, const Corners<4>& x1) {
-    return mean_over_step(x0, x1);
-}
-
 VolumeGradients<6> mean_volume_gradients(const Corners<6>& x0, const Corners<6>& x1) {
-    return mean_over_step(x0, x1);
+    VolumeGradients<6> mean = {};
+    for (double time : gauss_points) {
+        Corners<6> r;  // seen from corner 0
+        for (std::size_t i = 0; i < r.size(); ++i) r[i] = between(x0[i] - x0[0], x1[i] - x1[0], time);
+        const CellPoints<6> points = cell_points(r);
+        for (std::size_t k = 0; k < points.size(); ++k)
+            for (std::size_t i = 0; i < r.size(); ++i) mean[k][i] += 0.5 * points[k].volume_gradient[i];
+    }
+    return mean;
 }
 
 Vec3 mean_area_vector(const std::array<Vec3, 3>& x0, const std::array<Vec3, 3>& x1) {

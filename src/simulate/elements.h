@@ -17,8 +17,8 @@ namespace kropla {
 // their sums over j are.
 
 /// The places of the corners of a cell [m], numbered as in mesh/cells.h.
-template <std::size_t n>
-using Corners = std::array<Vec3, n>;
+template <std::size_t n, class Number = double>
+using Corners = std::array<Vector3<Number>, n>;
 
 template <class Cell>
 [[nodiscard]] auto corners(const Array<Vertex, Vec3>& position, const Mesh& mesh, const Cell& cell) {
@@ -36,48 +36,64 @@ template <std::size_t n>
 inline constexpr std::size_t points_of_cell = n == 4 ? 1 : 6;
 
 /// What is known of a cell's shape functions at a point, for the part of the cell it stands for.
-template <std::size_t n>
+template <std::size_t n, class Number = double>
 struct CellPoint {
-    double volume;                        // [m^3]
-    std::array<Vec3, n> volume_gradient;  // [m^2] volume times grad phi_i; they sum to zero
+    Number volume;                                   // [m^3]
+    std::array<Vector3<Number>, n> volume_gradient;  // [m^2] volume times grad phi_i; they sum to zero
 };
-template <std::size_t n>
-using CellPoints = std::array<CellPoint<n>, points_of_cell<n>>;
+template <std::size_t n, class Number = double>
+using CellPoints = std::array<CellPoint<n, Number>, points_of_cell<n>>;
 
 /// The only point of a tet: its volume and dV/dx_i, a third of the area vector of the facet opposite corner i, pointing to
 /// that corner; from differences to corner 0 alone, so that the rounding error is relative to the cell's size.
-[[nodiscard]] inline CellPoint<4> linear_tet(const Corners<4>& x) {
+template <class Number>
+[[nodiscard]] [[gnu::always_inline]] inline CellPoint<4, Number> linear_tet(const std::array<Vector3<Number>, 4>& x) {
     constexpr double sixth = 1.0 / 6;
-    const Vec3 a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
-    const Vec3 g1 = sixth * cross(b, c), g2 = sixth * cross(c, a), g3 = sixth * cross(a, b);
+    const Vector3<Number> a = x[1] - x[0], b = x[2] - x[0], c = x[3] - x[0];
+    const Vector3<Number> g1 = sixth * cross(b, c), g2 = sixth * cross(c, a), g3 = sixth * cross(a, b);
     return {dot(a, g1), {-(g1 + g2 + g3), g1, g2, g3}};
 }
 
-[[nodiscard]] inline CellPoints<4> cell_points(const Corners<4>& x) { return {linear_tet(x)}; }
+template <class Number>
+[[nodiscard]] CellPoints<4, Number> cell_points(const std::array<Vector3<Number>, 4>& x) {
+    return {linear_tet(x)};
+}
 [[nodiscard]] CellPoints<6> cell_points(const Corners<6>& x);
 
-template <std::size_t n>
-[[nodiscard]] double total_volume(const CellPoints<n>& points) {
-    double sum = 0;
-    for (const CellPoint<n>& point : points) sum += point.volume;
+template <std::size_t n, class Number = double>
+[[nodiscard]] Number total_volume(const CellPoints<n, Number>& points) {
+    Number sum = 0;
+    for (const CellPoint<n, Number>& point : points) sum += point.volume;
     return sum;
 }
 
 /// The gradient at a point of the field with these values at the corners.
-template <std::size_t n>
-[[nodiscard]] Vec3 gradient(const CellPoint<n>& point, const std::array<double, n>& values) {
-    Vec3 sum;
+template <std::size_t n, class Number>
+[[nodiscard]] Vector3<Number> gradient(const CellPoint<n, Number>& point, const std::array<Number, n>& values) {
+    Vector3<Number> sum;
     for (std::size_t i = 0; i < n; ++i) sum += values[i] / point.volume * point.volume_gradient[i];
     return sum;
 }
 
 /// The means over a step of the points' volume_gradient, while the corners go straight from `x0` to `x1`.
-/// Exact: the integrand is quadratic in time and two Gauss points integrate cubics. So the volume swept is
+/// Exact: the integrand is quadratic in time and two Gauss points integrate cubics, and a product a b of what changes
+/// evenly has the mean ((a0 + a1)(b0 + b1) + a0 b0 + a1 b1) / 6. So the volume swept is
 /// the volume gained: sum (x1_i - x0_i) . mean_i = V1 - V0, the geometric conservation law of
 /// [Lesoinne, Farhat 1996].
-template <std::size_t n>
-using VolumeGradients = std::array<std::array<Vec3, n>, points_of_cell<n>>;
-[[nodiscard]] VolumeGradients<4> mean_volume_gradients(const Corners<4>& x0, const Corners<4>& x1);
+template <std::size_t n, class Number = double>
+using VolumeGradients = std::array<std::array<Vector3<Number>, n>, points_of_cell<n>>;
+template <class Number>
+[[nodiscard]] VolumeGradients<4, Number> mean_volume_gradients(const std::array<Vector3<Number>, 4>& x0,
+                                                               const std::array<Vector3<Number>, 4>& x1) {
+    constexpr double share = 1.0 / 6;
+    std::array<Vector3<Number>, 4> both;
+    for (std::size_t i = 0; i < 4; ++i) both[i] = (x0[i] - x0[0]) + (x1[i] - x1[0]);
+    const CellPoint<4, Number> begin = linear_tet(x0), end = linear_tet(x1), sum = linear_tet(both);
+    VolumeGradients<4, Number> mean;
+    for (std::size_t i = 0; i < 4; ++i)
+        mean[0][i] = share * (sum.volume_gradient[i] + begin.volume_gradient[i] + end.volume_gradient[i]);
+    return mean;
+}
 [[nodiscard]] VolumeGradients<6> mean_volume_gradients(const Corners<6>& x0, const Corners<6>& x1);
 
 /// The mean over a step of the area vector [m^2] of the triangle whose corners go straight from `x0` to `x1`.

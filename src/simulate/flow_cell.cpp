@@ -384,12 +384,12 @@ double most_crossed(const FlowStage& stage, const Name& name) {
 
 }  // namespace
 
-KROPLA_FOR_EACH_PROCESSOR [[gnu::flatten]]
+KROPLA_FOR_EACH_PROCESSOR KROPLA_WITH_ITS_CALLS
 void flow_cell(const FlowStage& stage, Tet t, bool derivative, CellBlocks<4>& blocks) {
     add_cell_points<4>(stage, t, derivative, blocks);
 }
 
-KROPLA_FOR_EACH_PROCESSOR [[gnu::flatten]]
+KROPLA_FOR_EACH_PROCESSOR KROPLA_WITH_ITS_CALLS
 void flow_cell(const FlowStage& stage, const Prism& prism, bool derivative, CellBlocks<6>& blocks) {
     add_cell_points<6>(stage, prism, derivative, blocks);
 }

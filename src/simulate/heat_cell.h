@@ -40,5 +40,16 @@ struct HeatStep {
 /// The cell's part of the system derived in heat.h: rows in J, unknowns in K.
 [[nodiscard]] CellSystem<4> cell_system(const HeatStep& step, Tet t);
 [[nodiscard]] CellSystem<6> cell_system(const HeatStep& step, const Prism& prism);
+/// Of four tets at once, to the same bits.
+void cell_systems(const HeatStep& step, const std::array<Tet, 4>& tets, const FourPlaces& systems);
+
+/// What ask_cells is to ask.
+struct HeatKernel {
+    const HeatStep& step;
+
+    template <class Cell>
+    auto operator()(const Cell& cell) const { return cell_system(step, cell); }
+    void operator()(const std::array<Tet, 4>& tets, const FourPlaces& systems) const { cell_systems(step, tets, systems); }
+};
 
 }  // namespace kropla

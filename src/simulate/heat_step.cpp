@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -81,7 +82,7 @@ class HeatSolution {
 public:
     HeatSolution(const Ranks& ranks, HeatStep& step, const HeatConditions& conditions)
         : ranks_(ranks), step_(step), conditions_(conditions),
-          pattern_(make_pattern(step.current, living_cells(step.current, step.only), ranks)), after_(step.old_temperature),
+          made_pattern_(pattern_for(ranks, step)), pattern_(*made_pattern_), after_(step.old_temperature),
           marked_(vertices().size(), 0), system_(pattern_.rows), solver_(ranks, pattern_.rows),
           allowance_(pattern_.rows.count()), linear_(is_linear()) {
         for (const FixedValue& fixed : conditions.fixed) after_[fixed.vertex] = fixed.value;
@@ -126,6 +127,11 @@ public:
     }
 
 private:
+    /// The flow's, if it is of the same cells.
+    static std::shared_ptr<const Pattern> pattern_for(const Ranks& ranks, const HeatStep& step) {
+        if (step.flow.pattern && !step.only.exists()) return step.flow.pattern;
+        return std::make_shared<Pattern>(make_pattern(step.current, living_cells(step.current, step.only), ranks));
+    }
     [[nodiscard]] const std::vector<Vertex>& vertices() const { return pattern_.numbering.vertex; }
     [[nodiscard]] Vertex vertex_of(std::size_t owned_row) const {
         return vertices()[static_cast<std::size_t>(pattern_.rows.first_row) + owned_row];
@@ -211,7 +217,7 @@ private:
 
     /// About the guess. Returns by how much the solution differs from it, by the largest temperature.
     double solve_once() {
-        ask_cells(pattern_.cells, [&](const auto& cell) { return cell_system(step_, cell); },
+        ask_cells(pattern_.cells, HeatKernel{step_},
                   [&](const auto& cell) { return !linear_ || systems_are_to_change(cell); }, systems_, ranks_.watch);
         assemble();
         heed(ranks_);  // a rank that was stopped in there is met before anything is done together
@@ -429,7 +435,8 @@ private:
     const Ranks& ranks_;
     HeatStep& step_;
     const HeatConditions& conditions_;
-    Pattern pattern_;
+    std::shared_ptr<const Pattern> made_pattern_;
+    const Pattern& pattern_;
     Array<Vertex, double> after_;
     Array<Vertex, double> solved_;  // before it was repaired: what the rows of the system speak of
     std::vector<char> marked_;    // rows of low order

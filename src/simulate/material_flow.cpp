@@ -122,44 +122,106 @@ Array<Vertex, double> shares_of_mass(const Mesh& mesh, const Cells& cells, const
     return share;
 }
 
-/// The integrals of density grad phi_i . grad phi_j [m], or [kg/m^2].
-template <std::size_t n>
-CellSystem<n> laplacian(const CellPoints<n>& points, double density) {
-    CellSystem<n> system;
-    for (const CellPoint<n>& point : points)
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t j = 0; j < n; ++j)
-                system.matrix[i][j] +=
-                    density / point.volume * dot(point.volume_gradient[i], point.volume_gradient[j]);
-    return system;
+/// The unknowns of a region, among those of all cells: the rows that this rank owns, as many of them as are of the region,
+/// without the columns that are not.
+struct Part {
+    SparseRows rows;
+    std::vector<Vertex> vertex;      // of each row of all ranks
+    std::vector<std::size_t> place;  // of each entry, in the pattern's rows
+};
+
+/// Those with a share of the region's volume.
+Part part_of(const Pattern& pattern, const Array<Vertex, double>& share) {
+    const SparseRows& rows = pattern.rows;
+    Part part;
+    std::vector<PetscInt> row(pattern.numbering.vertex.size(), -1);
+    for (std::size_t r = 0; r < row.size(); ++r) {
+        if (static_cast<int>(r) == rows.first_row) part.rows.first_row = static_cast<int>(part.vertex.size());
+        if (!(share[pattern.numbering.vertex[r]] > 0)) continue;
+        row[r] = static_cast<PetscInt>(part.vertex.size());
+        part.vertex.push_back(pattern.numbering.vertex[r]);
+    }
+    for (std::size_t r = 0; r < rows.count(); ++r) {
+        if (row[static_cast<std::size_t>(rows.first_row) + r] < 0) continue;
+        for (auto k = static_cast<std::size_t>(rows.begin[r]); k < static_cast<std::size_t>(rows.begin[r + 1]); ++k) {
+            const PetscInt column = row[static_cast<std::size_t>(rows.column[k])];
+            if (column < 0) continue;
+            part.rows.column.push_back(column);
+            part.place.push_back(k);
+        }
+        part.rows.begin.push_back(static_cast<PetscInt>(part.rows.column.size()));
+    }
+    return part;
 }
 
-/// A residual is gas lost or gained. An empty density is one. Of no weight is what would fill the vertex's share of the volume in a
-/// step: the tolerance then is the relative change of a constant state.
-LinearSystem potential_system(const Mesh& mesh, const Pattern& pattern, const Array<Vertex, double>& swept,
-                              const Array<Vertex, double>& share, const Array<Vertex, double>& density, double dt,
+/// Adds the integrals of density grad phi_i . grad phi_j [m], or [kg/m^2], over cells of one kind, of which those of other
+/// regions have no points. Without densities they are one.
+template <std::size_t n>
+void add_laplacian(std::size_t row, const CellsAtRows<n>& at, const std::vector<CellPoints<n>>& cells,
+                   const std::vector<double>& density, double* value) {
+    for (const CellAtRow<n>& cell : at.of(row)) {
+        for (const CellPoint<n>& point : cells[cell.cell]) {
+            if (point.volume == 0) continue;
+            const double weight = (density.empty() ? 1 : density[cell.cell]) / point.volume;
+            const Vec3 mine = weight * point.volume_gradient[cell.corner];
+            for (std::size_t j = 0; j < n; ++j) value[cell.place[j]] += dot(mine, point.volume_gradient[j]);
+        }
+    }
+}
+
+/// Per cell; of other regions than the one that is asked for, zeros.
+template <std::size_t n, class Name>
+std::vector<CellPoints<n>> points_of(const Mesh& mesh, const std::vector<Name>& cells, Region region) {
+    std::vector<CellPoints<n>> points(cells.size());
+    for_all(cells.size(), [&](std::size_t c) {
+        if (cell_region(mesh, cells[c]) == region) points[c] = cell_points(corners(mesh, cells[c]));
+    });
+    return points;
+}
+
+/// Of cells, the mean of their vertices; empty if there are none.
+template <class Name>
+std::vector<double> densities_of(const Mesh& mesh, const std::vector<Name>& cells, const Array<Vertex, double>& density) {
+    std::vector<double> means(density.empty() ? 0 : cells.size());
+    for_all(means.size(), [&](std::size_t c) { means[c] = mean_of(at_corners(density, cell_vertices(mesh, cells[c]))); });
+    return means;
+}
+
+/// A place for each coupling of the pattern. An empty density is one.
+std::vector<double> laplacian(const Mesh& mesh, const Pattern& pattern, Region region, const Array<Vertex, double>& density,
                               const Watch* watch) {
-    CellSystems systems;
-    ask_cells(pattern.cells,
-              [&](const auto& cell) {
-                  const double of_cell = density.empty() ? 1 : mean_of(at_corners(density, cell_vertices(mesh, cell)));
-                  return laplacian(cell_points(corners(mesh, cell)), of_cell);
-              },
-              [](const auto&) { return true; }, systems, watch);
-    LinearSystem system(pattern.rows);
-    add_cells(pattern, systems, system);
+    heed(watch);
+    const auto tets = points_of<4>(mesh, pattern.cells.tets, region);
+    const auto prisms = points_of<6>(mesh, pattern.cells.prisms, region);
+    const auto of_tets = densities_of(mesh, pattern.cells.tets, density);
+    const auto of_prisms = densities_of(mesh, pattern.cells.prisms, density);
+    heed(watch);
+    std::vector<double> value(pattern.rows.column.size(), 0.0);
+    for_all(pattern.rows.count(), [&](std::size_t row) {
+        double* const of_row = value.data() + pattern.rows.begin[row];
+        add_laplacian(row, pattern.tets, tets, of_tets, of_row);
+        add_laplacian(row, pattern.prisms, prisms, of_prisms, of_row);
+    });
+    return value;
+}
+
+/// A residual is gas lost or gained. Of no weight is what would fill the vertex's share of the volume in a
+/// step: the tolerance then is the relative change of a constant state.
+LinearSystem potential_system(const Part& part, const std::vector<double>& laplacian, const Array<Vertex, double>& swept,
+                              const Array<Vertex, double>& share, double dt) {
+    LinearSystem system(part.rows);
+    for (std::size_t k = 0; k < part.place.size(); ++k) system.value[k] = laplacian[part.place[k]];
     for (std::size_t r = 0; r < system.right.size(); ++r) {
-        const Vertex v = pattern.numbering.vertex[static_cast<std::size_t>(pattern.rows.first_row) + r];
+        const Vertex v = part.vertex[static_cast<std::size_t>(part.rows.first_row) + r];
         system.right[r] = swept[v];
         system.negligible[r] = share[v] / dt;
     }
     return system;
 }
 
-Array<Vertex, double> at_vertices(const Mesh& mesh, const Numbering& numbering,
-                                  const std::vector<double>& value) {
+Array<Vertex, double> at_vertices(const Mesh& mesh, const Part& part, const std::vector<double>& value) {
     Array<Vertex, double> at(mesh.position.size(), 0.0);
-    for (std::size_t r = 0; r < value.size(); ++r) at[numbering.vertex[r]] = value[r];
+    for (std::size_t r = 0; r < value.size(); ++r) at[part.vertex[r]] = value[r];
     return at;
 }
 
@@ -199,12 +261,13 @@ MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& c
         const Array<Vertex, double> share = region == flow.by_mass ? shares_of_mass(current, cells, flow.density)
                                                                    : shares_of_volume(current, cells);
         balance(share, source);
-        const Pattern pattern = make_pattern(current, cells, ranks);
-        const LinearSystem system =
-            potential_system(current, pattern, source, share, region == flow.by_mass ? flow.density : Array<Vertex, double>{},
-                             dt, ranks.watch);
+        if (!flow.pattern) flow.pattern = std::make_shared<Pattern>(make_pattern(current, living_cells(current), ranks));
+        const Part part = part_of(*flow.pattern, share);
+        const std::vector<double> matrix =
+            laplacian(current, *flow.pattern, region, region == flow.by_mass ? flow.density : Array<Vertex, double>{}, ranks.watch);
+        const LinearSystem system = potential_system(part, matrix, source, share, dt);
         const Solution potential = solve(ranks, system, choice);
-        flow.potential[region] = at_vertices(current, pattern.numbering, potential.value);
+        flow.potential[region] = at_vertices(current, part, potential.value);
         flow.iterations += potential.iterations;
     }
     return flow;

@@ -5,9 +5,12 @@
 #include <kropla/simulate/petsc.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace kropla {
+
+struct Pattern;
 
 /// What a step of a flow found (flow.h).
 struct SolvedFlow {
@@ -16,7 +19,6 @@ struct SolvedFlow {
     Array<Vertex, double> density_before = {}, density = {};
     std::vector<FaceMass> through = {};
 };
-
 /// How the material of regions that do not go with the mesh flows during a step: u = velocity + grad Phi.
 struct MaterialFlow {
     /// What passes a face of the box at a vertex: the integral of phi_i u.n, n out of the box.
@@ -31,7 +33,9 @@ struct MaterialFlow {
     std::vector<Through> through = {};
     Region by_mass = {};  // whose density depends on the temperature: what is carried there is per mass
     Array<Vertex, double> density_before = {}, density = {};  // of it [kg/m^3], at the step's begin and end
-    int iterations = 0;   // of the solver; 0 if nothing had to be solved
+    int iterations = 0;  // of the solver; 0 if nothing had to be solved
+    /// Of all cells of the mesh that it was solved on, for what else is solved there; empty if nothing had to be.
+    std::shared_ptr<const Pattern> pattern = {};
 };
 
 /// The least flow of an incompressible gas beside what `solved` has which makes way for bodies during the step

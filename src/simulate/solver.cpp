@@ -6,6 +6,7 @@
 #include "simulate/solver.h"
 
 #include <kropla/base/error.h>
+#include "simulate/aggregation.h"
 #include "simulate/stop.h"
 
 #include <algorithm>
@@ -13,6 +14,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <sstream>
 
 namespace kropla {
@@ -58,7 +61,8 @@ void put(const std::vector<double>& values, Vec vector) {
 /// The entries of all ranks, on every rank.
 class Gathering {
 public:
-    explicit Gathering(Vec vector) {
+    Gathering(const Ranks& ranks, Vec vector) {
+        if (ranks.count == 1) return;  // they are all there
         VecScatter scatter = nullptr;
         Vec everywhere = nullptr;
         check(VecScatterCreateToAll(vector, &scatter, &everywhere));
@@ -66,18 +70,23 @@ public:
         everywhere_.reset(everywhere);
     }
     std::vector<double> operator()(Vec vector) const {
+        if (!scatter_) return copy_of(vector);
         check(VecScatterBegin(scatter_.get(), vector, everywhere_.get(), INSERT_VALUES, SCATTER_FORWARD));
         check(VecScatterEnd(scatter_.get(), vector, everywhere_.get(), INSERT_VALUES, SCATTER_FORWARD));
-        PetscInt size = 0;
-        check(VecGetSize(everywhere_.get(), &size));
-        const double* values = nullptr;
-        check(VecGetArrayRead(everywhere_.get(), &values));
-        std::vector<double> copy(values, values + size);
-        check(VecRestoreArrayRead(everywhere_.get(), &values));
-        return copy;
+        return copy_of(everywhere_.get());
     }
 
 private:
+    static std::vector<double> copy_of(Vec vector) {
+        PetscInt size = 0;
+        check(VecGetSize(vector, &size));
+        const double* values = nullptr;
+        check(VecGetArrayRead(vector, &values));
+        std::vector<double> copy(values, values + size);
+        check(VecRestoreArrayRead(vector, &values));
+        return copy;
+    }
+
     OwnedScatter scatter_;
     OwnedVec everywhere_;
 };
@@ -137,6 +146,8 @@ public:
     }
 
     [[nodiscard]] Mat get() const { return matrix_.get(); }
+    [[nodiscard]] const SparseRows& rows() const { return rows_; }
+    [[nodiscard]] const std::vector<double>& value() const { return value_; }
 
 private:
     const SparseRows& rows_;
@@ -152,19 +163,31 @@ double largest_size(const std::vector<double>& values) {
 }
 
 struct Residual {
-    std::vector<double> rest;  // b - A x per owned row
-    double largest;            // of their sizes, over all ranks
-    double backward_error;     // [-] over all ranks
+    std::vector<double> rest;    // b - A x per owned row
+    std::vector<double> size;    // what it is measured against, but for the row's sum
+    double largest = 0;          // of the sizes of `rest`, over all ranks
+    double backward_error = 0;   // [-] over all ranks
 };
 
-Residual residual(const Ranks& ranks, const LinearSystem& system, const DoubledUnknown& x) {
+/// Measures what is left.
+void measure(const Ranks& ranks, const LinearSystem& system, const DoubledUnknown& x, Residual& left) {
     const double most = largest_size(x.high);
     double error = 0, most_left = 0;
-    std::vector<double> rest(system.right.size());
-    for (std::size_t r = 0; r < rest.size(); ++r) {
+    for (std::size_t r = 0; r < left.rest.size(); ++r) {
+        const double rest = std::abs(left.rest[r]), size = left.size[r] + std::abs(system.row_sum[r]) * most;
+        most_left = std::max(most_left, rest);
+        if (rest != 0) error = std::max(error, std::isfinite(rest) ? rest / size : INFINITY);
+    }
+    left.largest = largest(ranks, most_left);
+    left.backward_error = largest(ranks, error);
+}
+
+Residual residual(const Ranks& ranks, const LinearSystem& system, const DoubledUnknown& x) {
+    Residual left{std::vector<double>(system.right.size()), std::vector<double>(system.right.size())};
+    for (std::size_t r = 0; r < left.rest.size(); ++r) {
         const std::size_t own = static_cast<std::size_t>(system.rows.first_row) + r;
         double sum = system.right[r] - system.row_sum[r] * x.high[own] - system.row_sum[r] * x.low[own];
-        double size = std::abs(system.right[r]) + std::abs(system.row_sum[r]) * most + system.negligible[r];
+        double size = std::abs(system.right[r]) + system.negligible[r];
         for (PetscInt k = system.rows.begin[r]; k < system.rows.begin[r + 1]; ++k) {
             const auto place = static_cast<std::size_t>(k);
             const double exchanged =
@@ -172,11 +195,11 @@ Residual residual(const Ranks& ranks, const LinearSystem& system, const DoubledU
             sum -= exchanged;
             size += std::abs(exchanged);
         }
-        rest[r] = sum;
-        most_left = std::max(most_left, std::abs(sum));
-        if (sum != 0) error = std::max(error, std::isfinite(sum) ? std::abs(sum) / size : INFINITY);
+        left.rest[r] = sum;
+        left.size[r] = size;
     }
-    return {std::move(rest), largest(ranks, most_left), largest(ranks, error)};
+    measure(ranks, system, x, left);
+    return left;
 }
 
 /// A pass got nowhere.
@@ -222,16 +245,17 @@ public:
         : treatment_(treatment),
           right_(make_vector(ranks, rows.count())),
           unknown_(make_vector(ranks, rows.count())),
-          gathering_(unknown_.get()),
+          gathering_(ranks, unknown_.get()),
           matrix_(ranks, rows, all_rows()) {
         KSP solver = nullptr;
         check(KSPCreate(ranks.communicator, &solver));
         solver_.reset(solver);
         check(KSPSetOptionsPrefix(solver, choice.prefix.c_str()));
         if (choice.potential) check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
-        set_defaults(choice);
+        set_defaults(choice, ranks);
         check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));
         check(KSPSetFromOptions(solver));
+        aggregates_ = preconditioner_is(PCSHELL);
         listen_on_the_way(solver, ranks);
         double rtol = 0, atol = 0;
         check(KSPGetTolerances(solver, &rtol, &atol, nullptr, &most_));
@@ -245,6 +269,7 @@ public:
         scale_ = row_scales(ranks, system, treatment_.alike);
         matrix_.take(system, scale_);
         if (treatment_.without_constants) leave_constants_out(ranks);
+        if (aggregates_) aggregation_.emplace(matrix_.rows(), matrix_.value());
         iterations_ = 0;
         iterations_left_ = most_;
     }
@@ -287,12 +312,21 @@ private:
         return size;
     }
 
-    /// Constants are taken out of every residual; the preconditioner is that of a matrix that is not singular.
+    [[nodiscard]] bool preconditioner_is(const std::string& type) const {
+        PC preconditioner = nullptr;
+        check(KSPGetPC(solver_.get(), &preconditioner));
+        PCType is = nullptr;
+        check(PCGetType(preconditioner, &is));
+        return is != nullptr && is == type;
+    }
+
+    /// Constants are taken out of every residual; PETSc's preconditioner is that of a matrix that is not singular.
     void leave_constants_out(const Ranks& ranks) {
         MatNullSpace space = nullptr;
         check(MatNullSpaceCreate(ranks.communicator, PETSC_TRUE, 0, nullptr, &space));
         constants_.reset(space);
         check(MatSetNullSpace(matrix_.get(), space));
+        if (aggregates_) return;
         Mat shifted = nullptr;
         check(MatDuplicate(matrix_.get(), MAT_COPY_VALUES, &shifted));
         regular_.reset(shifted);
@@ -303,13 +337,18 @@ private:
         check(KSPSetOperators(solver_.get(), matrix_.get(), shifted));
     }
 
-    void set_defaults(const SolverChoice& choice) {
+    void set_defaults(const SolverChoice& choice, const Ranks& ranks) {
         KSP solver = solver_.get();
         check(KSPSetType(solver, choice.potential ? KSPCG : KSPGMRES));
         if (!choice.potential) check(KSPGMRESSetRestart(solver, restart));
         PC preconditioner = nullptr;
         check(KSPGetPC(solver, &preconditioner));
-        if (choice.preconditioner == Preconditioner::multigrid) {
+        if (choice.potential && choice.preconditioner == Preconditioner::multigrid && ranks.count == 1 &&
+            !is_given_any("-" + choice.prefix + "pc_hypre")) {
+            check(PCSetType(preconditioner, PCSHELL));
+            check(PCShellSetContext(preconditioner, this));
+            check(PCShellSetApply(preconditioner, correct_by_aggregation));
+        } else if (choice.preconditioner == Preconditioner::multigrid) {
             set_multigrid(choice);
             check(PCSetType(preconditioner, PCHYPRE));
             check(PCHYPRESetType(preconditioner, "boomeramg"));
@@ -318,6 +357,22 @@ private:
         }
         check(KSPSetTolerances(solver, deepest_pass, 0.0, PETSC_DEFAULT, most_iterations));
         check(KSPSetInitialGuessNonzero(solver, PETSC_FALSE));
+    }
+
+    static PetscErrorCode correct_by_aggregation(PC preconditioner, Vec residual, Vec correction) {
+        void* self = nullptr;
+        PetscCall(PCShellGetContext(preconditioner, &self));
+        const double* from = nullptr;
+        double* to = nullptr;
+        PetscInt size = 0;
+        PetscCall(VecGetLocalSize(residual, &size));
+        PetscCall(VecGetArrayRead(residual, &from));
+        PetscCall(VecGetArrayWrite(correction, &to));
+        const auto count = static_cast<std::size_t>(size);
+        static_cast<Krylov*>(self)->aggregation_->correct({from, count}, {to, count});
+        PetscCall(VecRestoreArrayWrite(correction, &to));
+        PetscCall(VecRestoreArrayRead(residual, &from));
+        return 0;
     }
 
     /// BoomerAMG has no other way in than options; those that the user gave stand.
@@ -335,6 +390,15 @@ private:
             set_unless_given(choice, std::string("pc_hypre_boomeramg_") + name, value);
     }
 
+    /// Did the user give options that begin like this? They speak of what then is to be used.
+    static bool is_given_any(const std::string& begin) {
+        char* all = nullptr;
+        check(PetscOptionsGetAll(nullptr, &all));
+        const bool given = (" " + std::string(all)).find(" " + begin) != std::string::npos;
+        check(PetscFree(all));
+        return given;
+    }
+
     static void set_unless_given(const SolverChoice& choice, const std::string& name, const char* value) {
         const std::string option = "-" + choice.prefix + name;
         PetscBool given = PETSC_FALSE;
@@ -349,6 +413,8 @@ private:
     Matrix matrix_;
     OwnedMat regular_;
     OwnedNullSpace constants_;
+    bool aggregates_ = false;  // the preconditioner is the next
+    std::optional<Aggregation> aggregation_;
     OwnedKsp solver_;
     PetscInt most_ = most_iterations, iterations_left_ = most_iterations;
     int iterations_ = 0;
@@ -371,13 +437,15 @@ void balance(const Ranks& ranks, const LinearSystem& system, DoubledUnknown& x, 
     const double missing = total(ranks, left.rest) / held;
     if (!std::isfinite(missing)) return;
     for (std::size_t r = 0; r < x.high.size(); ++r) x.add(r, missing);
-    left = residual(ranks, system, x);
+    for (std::size_t r = 0; r < left.rest.size(); ++r) left.rest[r] -= system.row_sum[r] * missing;  // no difference changed
+    measure(ranks, system, x, left);
 }
 
 std::vector<double> everywhere(const Ranks& ranks, const std::vector<double>& mine) {
+    if (ranks.count == 1) return mine;
     const OwnedVec vector = make_vector(ranks, mine.size());
     put(mine, vector.get());
-    return Gathering(vector.get())(vector.get());
+    return Gathering(ranks, vector.get())(vector.get());
 }
 
 }  // namespace
