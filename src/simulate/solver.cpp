@@ -6,7 +6,6 @@
 #include "simulate/solver.h"
 
 #include <kropla/base/error.h>
-#include "simulate/aggregation.h"
 #include "simulate/stop.h"
 
 #include <algorithm>
@@ -252,10 +251,9 @@ public:
         solver_.reset(solver);
         check(KSPSetOptionsPrefix(solver, choice.prefix.c_str()));
         if (choice.potential) check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
-        set_defaults(choice, ranks);
+        set_defaults(choice);
         check(KSPSetOperators(solver, matrix_.get(), matrix_.get()));
         check(KSPSetFromOptions(solver));
-        aggregates_ = preconditioner_is(PCSHELL);
         listen_on_the_way(solver, ranks);
         double rtol = 0, atol = 0;
         check(KSPGetTolerances(solver, &rtol, &atol, nullptr, &most_));
@@ -269,7 +267,6 @@ public:
         scale_ = row_scales(ranks, system, treatment_.alike);
         matrix_.take(system, scale_);
         if (treatment_.without_constants) leave_constants_out(ranks);
-        if (aggregates_) aggregation_.emplace(matrix_.rows(), matrix_.value());
         iterations_ = 0;
         iterations_left_ = most_;
     }
@@ -312,21 +309,12 @@ private:
         return size;
     }
 
-    [[nodiscard]] bool preconditioner_is(const std::string& type) const {
-        PC preconditioner = nullptr;
-        check(KSPGetPC(solver_.get(), &preconditioner));
-        PCType is = nullptr;
-        check(PCGetType(preconditioner, &is));
-        return is != nullptr && is == type;
-    }
-
-    /// Constants are taken out of every residual; PETSc's preconditioner is that of a matrix that is not singular.
+    /// Constants are taken out of every residual; the preconditioner is that of a matrix that is not singular.
     void leave_constants_out(const Ranks& ranks) {
         MatNullSpace space = nullptr;
         check(MatNullSpaceCreate(ranks.communicator, PETSC_TRUE, 0, nullptr, &space));
         constants_.reset(space);
         check(MatSetNullSpace(matrix_.get(), space));
-        if (aggregates_) return;
         Mat shifted = nullptr;
         check(MatDuplicate(matrix_.get(), MAT_COPY_VALUES, &shifted));
         regular_.reset(shifted);
@@ -337,18 +325,13 @@ private:
         check(KSPSetOperators(solver_.get(), matrix_.get(), shifted));
     }
 
-    void set_defaults(const SolverChoice& choice, const Ranks& ranks) {
+    void set_defaults(const SolverChoice& choice) {
         KSP solver = solver_.get();
         check(KSPSetType(solver, choice.potential ? KSPCG : KSPGMRES));
         if (!choice.potential) check(KSPGMRESSetRestart(solver, restart));
         PC preconditioner = nullptr;
         check(KSPGetPC(solver, &preconditioner));
-        if (choice.potential && choice.preconditioner == Preconditioner::multigrid && ranks.count == 1 &&
-            !is_given_any("-" + choice.prefix + "pc_hypre")) {
-            check(PCSetType(preconditioner, PCSHELL));
-            check(PCShellSetContext(preconditioner, this));
-            check(PCShellSetApply(preconditioner, correct_by_aggregation));
-        } else if (choice.preconditioner == Preconditioner::multigrid) {
+if (choice.preconditioner == Preconditioner::multigrid) {
             set_multigrid(choice);
             check(PCSetType(preconditioner, PCHYPRE));
             check(PCHYPRESetType(preconditioner, "boomeramg"));
@@ -357,22 +340,6 @@ private:
         }
         check(KSPSetTolerances(solver, deepest_pass, 0.0, PETSC_DEFAULT, most_iterations));
         check(KSPSetInitialGuessNonzero(solver, PETSC_FALSE));
-    }
-
-    static PetscErrorCode correct_by_aggregation(PC preconditioner, Vec residual, Vec correction) {
-        void* self = nullptr;
-        PetscCall(PCShellGetContext(preconditioner, &self));
-        const double* from = nullptr;
-        double* to = nullptr;
-        PetscInt size = 0;
-        PetscCall(VecGetLocalSize(residual, &size));
-        PetscCall(VecGetArrayRead(residual, &from));
-        PetscCall(VecGetArrayWrite(correction, &to));
-        const auto count = static_cast<std::size_t>(size);
-        static_cast<Krylov*>(self)->aggregation_->correct({from, count}, {to, count});
-        PetscCall(VecRestoreArrayWrite(correction, &to));
-        PetscCall(VecRestoreArrayRead(residual, &from));
-        return 0;
     }
 
     /// BoomerAMG has no other way in than options; those that the user gave stand.
@@ -413,8 +380,6 @@ private:
     Matrix matrix_;
     OwnedMat regular_;
     OwnedNullSpace constants_;
-    bool aggregates_ = false;  // the preconditioner is the next
-    std::optional<Aggregation> aggregation_;
     OwnedKsp solver_;
     PetscInt most_ = most_iterations, iterations_left_ = most_iterations;
     int iterations_ = 0;
