@@ -338,6 +338,10 @@ Cell<4, Four> four_of(const FourTets& cells) {
             .velocity = places_together(cells, [](const auto& cell) -> auto& { return cell.velocity; }),
             .conductivity = Four(Four::Register{conductivity(0), conductivity(1), conductivity(2), conductivity(3)}),
             .dt = cells[0].dt,
+            .density = 1,
+            .thin_before = {},
+            .thin = {},
+            .by_mass = false,
             .convects = cells[0].convects,
             .proportional = true,
             .low = cells[0].low};
