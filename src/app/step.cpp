@@ -155,8 +155,7 @@ private:
         if (!enthalpy_.empty()) temperature_of(step.before, *it_.heat, enthalpy_, temperature(), known_density());
         const Array<Vertex, double> begin = it_.heat ? temperature() : Array<Vertex, double>{};
         FlowState flow;
-        // As bodies are moved once more, what was found before serves again.
-        if (!expands(it_) || step.round == 1 || expected_.size() != begin.size()) expected_ = begin;
+        expect(step, begin);
         for (int round = 1;; ++round) {
             SolvedFlow solved;
             if (it_.flow) {
@@ -170,13 +169,23 @@ private:
             temperature() = begin;
             solve_heat(step);
             if (!expands(it_)) break;
-            expected_ = temperature();
             if (density_agrees(step, solved.density, round == most_rounds) || round == most_rounds) break;
+            expected_ = temperature();
         }
         if (it_.flow) keep_flow(it_, flow, state_.fields);
         if (!enthalpy_.empty()) take_enthalpies(step.current);
         for (std::size_t s = 0; s < it_.species.size(); ++s) solve_species(step, s);
         return Solved{};
+    }
+
+    /// Of the temperature at the step's end, for what flows: that at its begin. As bodies are moved once more, what was found
+    /// before serves again, at vertices that are the same.
+    void expect(const StepToSolve& step, const Array<Vertex, double>& begin) {
+        const Array<Vertex, double> last = std::exchange(expected_, begin);
+        const Array<Vertex, Vec3> place = std::exchange(expected_at_, step.before.position);
+        if (step.round == 1 || !expands(it_)) return;
+        for (Vertex v : begin.indices())
+            if (as_size(v.value) < last.size() && place[v] == expected_at_[v]) expected_[v] = last[v];
     }
 
     /// Is a density that of the temperature? If not, the last time it is said.
@@ -240,7 +249,7 @@ private:
     /// The flow, and where bodies go in it.
     Answer solve_flow(const StepToSolve& step, FlowState& flow, SolvedFlow& solved) {
         constexpr double agreed = 3e-4;   // [-] of what acts on a body
-        constexpr double of_mass = 1e-5;  // [-] a hundredth of what forces ask for, for the sake of the mass
+        constexpr double of_mass = 1e-6;  // [-] a hundredth of what forces ask for, for the sake of the mass
         constexpr double let_pass = 1.1;  // [-] of the Courant number: no step is taken back for a little
         report.rounds = step.round;
         FlowOptions options = it_.flow->options;
@@ -307,7 +316,8 @@ private:
     const Ranks& ranks_;
     Fields fields_;
     MaterialFlow flow_;
-    Array<Vertex, double> expected_;  // temperature [K] at the end of the step
+    Array<Vertex, double> expected_;   // temperature [K] at the end of the step, and
+    Array<Vertex, Vec3> expected_at_;  // where the vertices were [m]
     FreeSteps free_;  // bodies that go where forces take them, in this attempt
     std::optional<Contacts> contacts_;  // likewise, what they do to each other
     std::string unsolved_;  // why the flow could not be solved for, in the last round

@@ -142,6 +142,14 @@ TEST(RunFlow, ABodyMayNotBeginNearerThanItMayCome) {
     expect_one_line(it.err, "body \"ball\" begins 0.05 m from what is nearest to it, less than contact.gap = 0.055 m");
 }
 
+/// In all steps, to this much [kg].
+void expect_mass_kept(const Table& steps, double bound) {
+    double largest = 0;
+    for (const double missed : numbers(steps, "mass_error_surroundings")) largest = std::max(largest, std::abs(missed));
+    testing::Test::RecordProperty("mass_error", std::to_string(1e9 * largest) + " ug");
+    EXPECT_LT(largest, bound);
+}
+
 TEST(RunFlow, CarriesHeatAndSpecies) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", blown);
@@ -154,8 +162,8 @@ TEST(RunFlow, CarriesHeatAndSpecies) {
     for (std::size_t n = 0; n < energy.size(); ++n) {
         EXPECT_NEAR(error[n], 0, 1e-12 * energy[n]);
         EXPECT_NEAR(smoke_error[n], 0, 1e-12 * smoke.back());
-        EXPECT_NEAR(numbers(steps, "mass_error_surroundings")[n], 0, 1.1e-6);  // of 0.04 that pass
     }
+    expect_mass_kept(steps, 2.3e-9);  // of 0.04 that pass
     EXPECT_GT(smoke.back(), 0.2);
     for (const double coldest : numbers(steps, "temperature_min_ball")) EXPECT_GE(coldest, 300 - 1e-7);
     const Checkpoint last = read_checkpoint(folder.path / "d/checkpoint.h5");
@@ -187,12 +195,11 @@ TEST(RunFlow, AGasExpandsAndKeepsMassAndEnergy) {
     const Outcome it = kropla_program(folder, "run a.toml --out d");
     ASSERT_EQ(it.code, 0) << it.err;
     const Table steps = read_table(folder.path / "d/steps.csv");
-    const std::vector<double> energy = numbers(steps, "energy_integral"), error = numbers(steps, "energy_error"),
-                              mass_error = numbers(steps, "mass_error_surroundings");
+    const std::vector<double> energy = numbers(steps, "energy_integral"), error = numbers(steps, "energy_error");
     for (std::size_t n = 0; n < energy.size(); ++n) {
         EXPECT_NEAR(error[n], 0, 1e-11 * energy[n]);
-        EXPECT_NEAR(mass_error[n], 0, 1.1e-6);  // of 0.01 that pass
     }
+    expect_mass_kept(steps, 1.93e-7);  // of 0.01 that pass
     EXPECT_GT(numbers(steps, "volume_out_z_min").back() + numbers(steps, "volume_out_z_max").back(), 0.01);
     const Checkpoint last = read_checkpoint(folder.path / "d/checkpoint.h5");
     for (Tet t : last.mesh.tets.indices()) {
