@@ -36,5 +36,9 @@ TEST(FlowValidation, SphereThatSwings) {
     expect_within(swinging_sphere(petsc().all_ranks(), 1), {3.71, 1.31});
 }
 
+TEST(FlowValidation, SphereInAStream) {
+    expect_within(sphere_in_stream(petsc().all_ranks(), stream_20, 1), {3.29, 2.74});
+}
+
 }  // namespace
 }  // namespace kropla
