@@ -367,8 +367,8 @@ private:
         for_each_cell(blocks_.pattern.cells, [&](const auto& cell) {
             const FlowMaterial& material = material_[cell_region(current_, cell)];
             const auto vertices = cell_vertices(current_, cell);
-            const double kinematic = mean_of(material.viscosity, material.viscosities, vertices) /
-                                     mean_of(material.density, material.densities, vertices);
+            const double kinematic = property_of(material.viscosity, material.viscosities, vertices) /
+                                     property_of(material.density, material.densities, vertices);
             const double length =
                 std::cbrt(total_volume(cell_points(corners(stage.position, current_, cell))));
             mine[0] += 1;
@@ -386,8 +386,8 @@ private:
             [&](const auto& cell) {
                 const FlowMaterial& material = material_[cell_region(current_, cell)];
                 const auto vertices = cell_vertices(current_, cell);
-                const double density = mean_of(material.density, material.densities, vertices),
-                             viscosity = mean_of(material.viscosity, material.viscosities, vertices);
+                const double density = property_of(material.density, material.densities, vertices),
+                             viscosity = property_of(material.viscosity, material.viscosities, vertices);
                 const double laplacian = stage.per_time > 0 ? 1 / (density * stage.per_time) : 0;
                 return pressure_cell(cell_points(corners(stage.position, current_, cell)), laplacian,
                                      1 / viscosity);
@@ -398,12 +398,9 @@ private:
         return {std::move(sums.value), std::move(sums.held)};
     }
     template <std::size_t n>
-    static double mean_of(double value, const Array<Vertex, double>& values,
-                          const std::array<Vertex, n>& vertices) {
-        if (values.empty()) return value;
-        double sum = 0;
-        for (Vertex v : vertices) sum += values[v];
-        return sum / static_cast<double>(n);
+    static double property_of(double value, const Array<Vertex, double>& values,
+                              const std::array<Vertex, n>& vertices) {
+        return values.empty() ? value : mean_of(at_corners(values, vertices));
     }
 
     /// Where faces meet, each direction is of the one across it, else of all alike that hold it.

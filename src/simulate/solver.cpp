@@ -145,8 +145,6 @@ public:
     }
 
     [[nodiscard]] Mat get() const { return matrix_.get(); }
-    [[nodiscard]] const SparseRows& rows() const { return rows_; }
-    [[nodiscard]] const std::vector<double>& value() const { return value_; }
 
 private:
     const SparseRows& rows_;
