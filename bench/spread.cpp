@@ -175,7 +175,7 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 
 /// One step by the way; the mesh is moved if no cell turns over.
 bool step(Way way, Mesh& mesh, const Domain& domain, double t0, double t1, ZoneMotion& motion, Outcome& outcome) {
-    const std::vector<std::vector<Vertex>> bodies = {body_vertices(mesh)};
+    const MovedBodies bodies{{body_vertices(mesh)}};
     Mesh moved = mesh;
     Zone zone;
     begin_motion(motion);

@@ -10,6 +10,9 @@ list(APPEND KROPLA_MESH_FILES
     adapt/refusal.cpp
     adapt/improve.cpp
     adapt/remesh.cpp
+    adapt/surface_star.cpp
+    adapt/surface.cpp
+    adapt/adapt_surface.cpp
     adapt/way.cpp
     adapt/move.cpp
     adapt/correction.cpp

@@ -1,5 +1,6 @@
 #include "adapt/mesh_step.h"
 
+#include "adapt/adapt_surface.h"
 #include "adapt/constants.h"
 #include "adapt/paper.h"
 #include "adapt/way.h"
@@ -83,12 +84,23 @@ void look_again(const Mesh& mesh, const char* which) {
 
 MeshStep::MeshStep(Domain domain, PlannedMotions planned, Mesh mesh, double t, const AdaptOptions& options)
     : domain_(std::move(domain)), planned_(std::move(planned)), options_(options),
-      follow_(options.paper ? Follow::rest : Follow::spread), reference_(std::move(mesh)), before_(reference_),
-      current_(reference_), time_(t), target_time_(t) {
+      reference_(std::move(mesh)), before_(reference_), current_(reference_), time_(t), target_time_(t) {
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
-        bodies_.push_back(vertices_of(reference_, region_of_body(body)));
+        bodies_.vertices.push_back(vertices_of(reference_, region_of_body(body)));
+    bodies_.surroundings = options.paper ? Follow::rest : Follow::spread;
+    find_deforming();
     at_inner_shells_ = cells_at_inner_shells(reference_);
 }
+
+void MeshStep::find_deforming() {
+    bodies_.deforming = deforming_surfaces(domain_, reference_);
+    for (const DeformingSurface& surface : bodies_.deforming) {
+        bodies_.vertices[surface.body] = surface.vertices;
+        domain_.bodies[surface.body].shape = shape_of(surface, reference_.position);
+    }
+}
+
+Snapshot MeshStep::snapshot_at(double t) const { return snapshot(domain_, t, bodies_.deforming, current_.position); }
 
 void MeshStep::end_attempt() noexcept {
     for (auto& [body, told] : told_) std::swap(domain_.bodies[body].motion, told.before);
@@ -128,7 +140,7 @@ const Changes& MeshStep::refine() {
 
 /// Near the places of trouble, at the step's beginning.
 Changes MeshStep::refine_by_size() {
-    const Snapshot at_time = snapshot(domain_, time_);
+    const Snapshot at_time = snapshot_at(time_);
     AdaptOptions options = options_;
     options.good_enough = std::max(least_good_enough, stricter * options_.good_enough);
     auto cells = cells_near(current_, trouble_, trouble_in_sizes, at_time);
@@ -146,7 +158,7 @@ Changes MeshStep::refine_by_size() {
 
 /// The same by clusters, in a part of the domain that grows with the refusals; the whole region at last.
 Changes MeshStep::refine_by_paper() {
-    const Snapshot at_time = snapshot(domain_, time_);
+    const Snapshot at_time = snapshot_at(time_);
     AdaptOptions options = options_;
     options.whole_region = false;
     options.cut_out = cut_out_of_trouble;
@@ -169,7 +181,7 @@ void MeshStep::move_boundary() {
     stuck_ = turned_too_far();
     if (stuck_) return;
     statistics_.legs = 1;
-    place_boundary(current_, domain_, bodies_, time_, t, zone_, motion_, follow_);
+    place_boundary(current_, domain_, bodies_, time_, t, zone_, motion_);
     write_places(motion_, current_);
     note_moved();
 }
@@ -201,7 +213,7 @@ void MeshStep::move_in_legs() {
         heed(options_.watch);
         statistics_.legs = leg;
         const auto move_to = [&](double t) {
-            return kropla::move_boundary(current_, domain_, bodies_, here, t, zone_, motion_, follow_);
+            return kropla::move_boundary(current_, domain_, bodies_, here, t, zone_, motion_);
         };
         const MoveReport report = move_to(target_time_);
         const double share = report.arrived ? 1 : share_of_safe * report.fraction;
@@ -296,7 +308,7 @@ Refusal MeshStep::refused(Tet cell, const std::string& fault, double advised_dt)
 }
 
 std::optional<Refusal> MeshStep::narrow_gap() const {
-    const auto gap = narrowest_gap(current_, snapshot(domain_, target_time_));
+    const auto gap = narrowest_gap(current_, snapshot_at(target_time_));
     if (!gap || gap->distance >= gap->allowed) return std::nullopt;
     const Approach near{gap->body, gap->wall, gap->other, std::max(0.0, gap->distance), target_time_};
     const std::string advice = near.gap > 0 ? "; at most " + metres(rounded_down(near.gap)) + " would do" : "";
@@ -352,18 +364,68 @@ Changes MeshStep::remesh_by_paper() {
     AdaptOptions options = options_;
     options.whole_region = false;  // what meets the floor is not worth it
     return remesh_clusters(current_, cells_above(options_.swap_above), about_the_limit(options_),
-                           snapshot(domain_, target_time_), options);
+                           snapshot_at(target_time_), options);
 }
 
 Changes MeshStep::remesh_by_size(const AdaptOptions& options) {
-    const Snapshot at_time = snapshot(domain_, target_time_);
+    const Snapshot at_time = snapshot_at(target_time_);
     Changes changes = adapt_to_size(current_, zone_, motion_, at_time, options);
     changes += swap_for_energy(current_, cells_above(options.swap_above), options);
     std::vector<Tet> poor = cells_above(options.good_enough);
+    if (!bodies_.deforming.empty()) adapt_surfaces(at_time, options, changes);
     poor.insert(poor.end(), changes.cells.begin(), changes.cells.end());
     changes += improve(current_, poor, at_time, options, changes.cells);
+    if (!bodies_.deforming.empty()) improve_surfaces(poor, at_time, options, changes);
     changes += repair(current_, changes.cells, at_time, options);
     return changes;
+}
+
+namespace {
+
+/// The cells at vertices.
+std::vector<Tet> cells_at(const Mesh& mesh, std::span<const Vertex> vertices) {
+    IndexSet<Tet> cells;
+    std::vector<Tet> around;
+    for (Vertex v : vertices) {
+        if (!alive(mesh, v)) continue;
+        ball(mesh, v, around);
+        for (Tet t : around) cells.insert(t);
+    }
+    return cells.list();
+}
+
+}  // namespace
+
+/// The surfaces of deforming bodies, and the sizes of the cells at what is new there.
+void MeshStep::adapt_surfaces(const Snapshot& at_time, const AdaptOptions& options, Changes& changes) {
+    Changes of_surfaces;
+    for (const DeformingSurface& surface : bodies_.deforming)
+        of_surfaces += adapt_surface(current_, surface, motion_.size, options);
+    auto cells = cells_at(current_, of_surfaces.vertices);
+    cells.insert(cells.end(), of_surfaces.cells.begin(), of_surfaces.cells.end());
+    of_surfaces += adapt_to_size(current_, cells, at_time, options);
+    of_surfaces.cells.insert(of_surfaces.cells.end(), cells.begin(), cells.end());
+    changes += of_surfaces;
+}
+
+/// What is bad at them still.
+void MeshStep::improve_surfaces(std::vector<Tet> cells, const Snapshot& at_time, const AdaptOptions& options,
+                                Changes& changes) {
+    for (int round = 0; round < most_rounds; ++round) {
+        cells.insert(cells.end(), changes.cells.begin(), changes.cells.end());
+        std::erase_if(cells, [&](Tet t) { return !alive(current_, t) || aspect_ratio(current_, t) <= options.good_enough; });
+        std::ranges::sort(cells);
+        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        if (cells.empty()) return;
+        Changes more;
+        for (const DeformingSurface& surface : bodies_.deforming)
+            more += improve_surface(current_, cells, region_of_body(surface.body), options);
+        if (more.vertices.empty()) return;
+        const auto at_moved = cells_at(current_, more.vertices);
+        more.cells.insert(more.cells.end(), at_moved.begin(), at_moved.end());
+        more += improve(current_, more.cells, at_time, options, more.cells);
+        changes += more;
+    }
 }
 
 const Changes& MeshStep::remesh() {
@@ -390,6 +452,7 @@ void MeshStep::accept() {
     told_.clear();
     time_ = target_time_;
     trouble_.clear();
+    find_deforming();
     look_again(before_, "moved");
     look_again(reference_, "adapted");
 }

@@ -67,6 +67,10 @@ private:
         Motion before;  // what the domain had
     };
 
+    /// Looks for the surfaces of deforming bodies in the reference.
+    void find_deforming();
+    /// With the bodies where the current mesh has them.
+    [[nodiscard]] Snapshot snapshot_at(double t) const;
     [[nodiscard]] std::optional<Refusal> what_limits() const;
     [[nodiscard]] Refusal refused(Tet cell, const std::string& fault, double advised_dt) const;
     [[nodiscard]] std::optional<Refusal> narrow_gap() const;
@@ -78,6 +82,8 @@ private:
     Changes refine_by_paper();
     Changes remesh_by_size(const AdaptOptions& options);
     Changes remesh_by_paper();
+    void adapt_surfaces(const Snapshot& at_time, const AdaptOptions& options, Changes& changes);
+    void improve_surfaces(std::vector<Tet> cells, const Snapshot& at_time, const AdaptOptions& options, Changes& changes);
     void move_in_legs();
     void note_turned_over(double reached);
     bool optimise_placed();
@@ -89,8 +95,7 @@ private:
     PlannedMotions planned_;
     std::map<std::size_t, Told> told_;       // by bodies: this step
     AdaptOptions options_;
-    Follow follow_;                          // of the surroundings
-    std::vector<std::vector<Vertex>> bodies_;  // the vertices of each body's cells
+    MovedBodies bodies_;
     std::vector<Tet> at_inner_shells_;         // cells of bodies that do not move rigidly: at the shells of inner layers
     Mesh reference_, before_, current_;
     double time_, target_time_;

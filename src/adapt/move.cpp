@@ -1,6 +1,6 @@
-// Motion of bodies through the mesh. Bodies move rigidly; their displacement is spread into the surroundings
+// Motion of bodies through the mesh. Bodies move rigidly, or deform; their displacement is spread into the surroundings
 // by weights that fall with the distance, as in [Luke, Collins, Blades 2012], "A fast mesh deformation method
-// using explicit interpolation". Here a body's displacement is that of its rigid motion at the vertex, and
+// using explicit interpolation". Here a body's displacement is that of its motion at the vertex, and
 // the share of it that a vertex takes follows the cells' size, so that cells stream past the body instead of being
 // squeezed and torn; vertices on the faces of the box slide along; and a body reaches no farther than a few
 // of its own sizes.
@@ -27,9 +27,12 @@ struct Travel {
     double far_away;  // from the centre, nothing beyond is in reach [m]
     double grain;     // of places in the body [m]: a power of two
     double sized = 0; // from the centre at either end, no target size changes beyond [m]; 0: where none does beyond reach
+    const Deformation* deformation = nullptr;  // of a body that deforms, from
+    double start = 0, end = 0;                 // to [s]
 
     /// Where a point fixed to the body would go from `x`.
     [[nodiscard]] Vec3 displacement(const Vec3& x) const {
+        if (deformation != nullptr) return (*deformation)(x, start, end) - x;
         const Vec3 in_body = rotated_back(from.orientation, x - from.centre);
         return to.centre + rotated(to.orientation, in_body) - x;
     }
@@ -37,6 +40,7 @@ struct Travel {
     /// it is off by rounding only, which is less than half a grain. So nothing adds up over the steps, and
     /// volumes stay.
     [[nodiscard]] Vec3 taken_along(const Vec3& x) const {
+        if (deformation != nullptr) return (*deformation)(x, start, end);
         if (from.centre == to.centre && from.orientation.axes == to.orientation.axes) return x;
         Vec3 in_body = rotated_back(from.orientation, x - from.centre);
         for (int axis = 0; axis < 3; ++axis) in_body[axis] = grain * std::round(in_body[axis] / grain);
@@ -84,17 +88,22 @@ double graded_distance(const Snapshot& at, std::size_t body) {
 }
 
 bool moves(const Travel& travel) {
-    return travel.from.centre != travel.to.centre || travel.from.orientation.axes != travel.to.orientation.axes;
+    return travel.deformation != nullptr || travel.from.centre != travel.to.centre || travel.from.orientation.axes != travel.to.orientation.axes;
 }
 
-std::vector<Travel> travels(const Domain& domain, double t0, double t1) {
+std::vector<Travel> travels(const Domain& domain, const Snapshot& start, double t0, double t1) {
     std::vector<Travel> result;
-    const Snapshot start = snapshot(domain, t0);
     for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
         const Shape& from = start.shapes[body];
         const double size = outer_radius(from);
         const double reach = reach_of(from, domain), graded = graded_distance(start, body);
         Travel travel{from, shape_at(domain.bodies[body], t1), reach, reach + size, grain_of(domain.box, size)};
+        if (const Deformation& deformation = domain.bodies[body].deformation) {
+            travel.to = from;
+            travel.deformation = &deformation;
+            travel.start = t0;
+            travel.end = t1;
+        }
         if (graded > reach && moves(travel)) travel.sized = graded + size;
         result.push_back(std::move(travel));
     }
@@ -148,10 +157,9 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
     return u;
 }
 
-/// Puts the bodies' vertices where they go: rigidly with the body, but for the columns of layers, which stand on
-/// their wall at the end as high as the gaps there let them.
-void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Travel> travels,
-                  std::span<const std::vector<Vertex>> bodies, ZoneMotion& motion) {
+/// Puts the bodies' vertices where they go with the body.
+void place_bodies(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
+                  ZoneMotion& motion) {
     motion.bodies.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i)
         for (Vertex v : bodies[i]) {
@@ -159,6 +167,42 @@ void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Trav
             motion.moves[v] = ZoneMotion::with_body;
             motion.place[v] = travels[i].taken_along(mesh.position[v]);
         }
+}
+
+/// The vertices of a surface went with the flow; what was flat between them has become curved. Shifts them along their
+/// normals by the volume that is between the flat triangles and the curved ones, so that the volume inside becomes what the
+/// flow makes of it, place by place: to the fourth power of the edges, not to the second. The curved triangle is the
+/// quadratic one through the images of the middles of its edges.
+void keep_with_flow(const Mesh& mesh, const Travel& travel, const DeformingSurface& surface, ZoneMotion& motion) {
+    const auto number = [&](Vertex v) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
+    };
+    const auto rise = [&](Vertex a, Vertex b) {  // of the middle of an edge, over the middle of its ends
+        const Vec3 image = (*travel.deformation)(0.5 * (mesh.position[a] + mesh.position[b]), travel.start, travel.end);
+        return image - 0.5 * (motion.place[a] + motion.place[b]);
+    };
+    std::vector<Vec3> normal(surface.vertices.size());  // times twice the area around
+    std::vector<double> missing(surface.vertices.size(), 0);
+    std::vector<double> of_triangle(surface.triangles.size());
+    for_all(surface.triangles.size(), [&](std::size_t t) {
+        const auto& [a, b, c] = surface.triangles[t];
+        const Vec3 twice_area = cross(motion.place[b] - motion.place[a], motion.place[c] - motion.place[a]);
+        of_triangle[t] = dot(twice_area, rise(a, b) + rise(b, c) + rise(c, a)) / 6;
+    });
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto& [a, b, c] = surface.triangles[t];
+        const Vec3 twice_area = cross(motion.place[b] - motion.place[a], motion.place[c] - motion.place[a]);
+        for (Vertex v : surface.triangles[t]) {
+            normal[number(v)] += twice_area;
+            missing[number(v)] += of_triangle[t] / 3;
+        }
+    }
+    for (std::size_t i = 0; i < surface.vertices.size(); ++i)
+        motion.place[surface.vertices[i]] += 6 * missing[i] / squared_norm(normal[i]) * normal[i];
+}
+
+/// Then puts the columns of layers on their wall, as high as the gaps there let them be at the end.
+void place_columns(const Mesh& mesh, const Snapshot& at_end, ZoneMotion& motion) {
     for (const PrismLayer& layer : mesh.layers) {
         std::vector<Vec3> wall;
         for (int column = 0; column < count_columns(layer); ++column)
@@ -169,12 +213,12 @@ void place_bodies(const Mesh& mesh, const Snapshot& at_end, std::span<const Trav
     }
 }
 
-/// A tet of the surroundings at the body.
-std::optional<Tet> tet_beside(const Mesh& mesh, std::span<const Vertex> body) {
+/// A tet of the region at the body.
+std::optional<Tet> tet_beside(const Mesh& mesh, std::span<const Vertex> body, Region region) {
     std::vector<Tet> around;
     for (Vertex v : body) {
         ball(mesh, v, around);
-        const auto found = std::ranges::find_if(around, [&](Tet t) { return mesh.region[t] == surroundings; });
+        const auto found = std::ranges::find_if(around, [&](Tet t) { return mesh.region[t] == region; });
         if (found != around.end()) return *found;
     }
     return std::nullopt;
@@ -195,15 +239,23 @@ bool keeps_its_size(std::span<const Travel> travels, const Vec3& x) {
     });
 }
 
-/// Takes in all cells of the surroundings with a vertex that a body moves, or whose target size it changes, outwards
-/// from those that are there. What has come out of reach stays, until there is too much of it.
-void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
-               Zone& zone) {
+/// Is a cell of the region at the vertex in the zone?
+bool has_cell_at(const Zone& zone, const Mesh& mesh, Vertex v, Region region) {
+    return zone.has.contains(v) && std::ranges::any_of(zone.ball[v], [&](Tet t) { return mesh.region[t] == region; });
+}
+
+/// Takes in all cells of the surroundings, and of deforming bodies, with a vertex that a body moves, or whose target size
+/// it changes, outwards from those that are there. What has come out of reach stays, until there is too much of it.
+void reach_out(const Mesh& mesh, std::span<const Travel> travels, const MovedBodies& bodies, Zone& zone) {
     std::vector<Tet> cells;
-    const auto is_there = [&](Vertex v) { return zone.has.contains(v); };
-    for (const auto& body : bodies)
-        if (std::ranges::none_of(body, is_there))
-            if (const auto t = tet_beside(mesh, body)) cells.push_back(*t);
+    const auto begin_with = [&](const std::vector<Vertex>& body, Region region) {
+        if (std::ranges::any_of(body, [&](Vertex v) { return has_cell_at(zone, mesh, v, region); })) return;
+        if (const auto t = tet_beside(mesh, body, region)) cells.push_back(*t);
+    };
+    zone.deforming.clear();
+    for (const DeformingSurface& surface : bodies.deforming) zone.deforming.push_back(region_of_body(surface.body));
+    for (const auto& body : bodies.vertices) begin_with(body, surroundings);
+    for (const DeformingSurface& surface : bodies.deforming) begin_with(surface.vertices, region_of_body(surface.body));
     add_cells(zone, mesh, cells);
     auto front = zone.has.list();
     std::vector<Tet> around;
@@ -215,7 +267,7 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<cons
             if (out_of_reach(travels, x) && keeps_its_size(travels, x)) continue;
             ball(mesh, v, around);
             for (Tet t : around)
-                if (mesh.region[t] == surroundings && !zone.holds.contains(t)) cells.push_back(t);
+                if (zone.takes(mesh.region[t]) && !zone.holds.contains(t)) cells.push_back(t);
         }
         add_cells(zone, mesh, cells);
         IndexSet<Vertex> next;
@@ -225,12 +277,9 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, std::span<cons
     }
 }
 
-/// Gathers what is in reach of the bodies, and where the vertices are to go.
-void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& at_end, std::span<const Travel> travels,
-                    std::span<const std::vector<Vertex>> bodies, Follow surroundings, Zone& zone, ZoneMotion& motion) {
-    reach_out(mesh, travels, bodies, zone);
-    fit(motion, mesh);
-    place_bodies(mesh, at_end, travels, bodies, motion);
+/// Places the vertices that do not belong to a body.
+void place_others(const Mesh& mesh, const Snapshot& at_start, std::span<const Travel> travels, Follow surroundings,
+                  const Zone& zone, ZoneMotion& motion) {
     motion.vertices = zone.has.list();
     for_all(motion.vertices.size(), [&](std::size_t i) {
         const Vertex v = motion.vertices[i];
@@ -245,28 +294,40 @@ void gather_reached(const Mesh& mesh, const Snapshot& at_start, const Snapshot& 
         if (surroundings == Follow::rest) return;
         motion.place[v] += restricted(spread(travels, at_start, mesh.position[v]), freedom(zone, motion, v));
     });
+}
+
+/// Lists the cells that take part, and leaves out of the zone what does not, if there is too much of it.
+void list_and_shrink(const Mesh& mesh, Zone& zone, ZoneMotion& motion) {
     list_cells(zone, motion, mesh);
-    if (zone.holds.size() > most_unused * (motion.cells.size() + motion.beyond.size())) {
-        IndexSet<Tet> stay;
-        for (Tet t : motion.cells) stay.insert(t);
-        for (Tet t : motion.beyond) stay.insert(t);
-        shrink(zone, mesh, stay);
-        motion.vertices = zone.has.list();
-    }
-    find_sizes(motion, at_end);
+    if (zone.holds.size() <= most_unused * (motion.cells.size() + motion.beyond.size())) return;
+    IndexSet<Tet> stay;
+    for (Tet t : motion.cells) stay.insert(t);
+    for (Tet t : motion.beyond) stay.insert(t);
+    shrink(zone, mesh, stay);
+    motion.vertices = zone.has.list();
 }
 
 }  // namespace
 
-void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone, ZoneMotion& motion, Follow follow) {
-    gather_reached(mesh, snapshot(domain, t0), snapshot(domain, t1), travels(domain, t0, t1), bodies, follow, zone,
-                   motion);
+void place_boundary(const Mesh& mesh, const Domain& domain, const MovedBodies& bodies, double t0, double t1, Zone& zone,
+                    ZoneMotion& motion) {
+    const Snapshot at_start = snapshot(domain, t0, bodies.deforming, mesh.position);
+    const std::vector<Travel> travelling = travels(domain, at_start, t0, t1);
+    reach_out(mesh, travelling, bodies, zone);
+    fit(motion, mesh);
+    place_bodies(mesh, travelling, bodies.vertices, motion);
+    for (const DeformingSurface& surface : bodies.deforming)
+        keep_with_flow(mesh, travelling[surface.body], surface, motion);
+    const Snapshot at_end = snapshot(domain, t1, bodies.deforming, motion.place);
+    place_columns(mesh, at_end, motion);
+    place_others(mesh, at_start, travelling, bodies.surroundings, zone, motion);
+    list_and_shrink(mesh, zone, motion);
+    find_sizes(motion, at_end);
 }
 
-MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone, ZoneMotion& motion, Follow follow) {
-    place_boundary(mesh, domain, bodies, t0, t1, zone, motion, follow);
+MoveReport move_boundary(Mesh& mesh, const Domain& domain, const MovedBodies& bodies, double t0, double t1, Zone& zone,
+                         ZoneMotion& motion) {
+    place_boundary(mesh, domain, bodies, t0, t1, zone, motion);
     const MoveReport report = check_way(motion, mesh, mesh.position, least_volume_kept);
     if (report.arrived) write_places(motion, mesh);
     return report;

@@ -57,6 +57,11 @@ private:
 [[nodiscard]] std::optional<Cavity> best_swap(const Mesh& mesh, Tet t, std::span<const std::size_t> edges, bool facets,
                                               double bound);
 
+/// Fills what an edge leaves on one side of a surface, between this and the others of its shell's ring, in the order of
+/// the ring from one end on the surface to the other, with cells that do not have the edge: the best. Returns false, and
+/// adds none, if that cannot be, or the ring is longer than `longest_ring`.
+[[nodiscard]] bool fill_half(const Mesh& mesh, Edge edge, std::span<const Vertex> ring, Region region, Cavity& cavity);
+
 /// Is the cell still there, and worse than that [-] R/r? How many are?
 [[nodiscard]] bool is_worse(const Mesh& mesh, Tet t, double than);
 [[nodiscard]] int count_worse(const Mesh& mesh, std::span<const Tet> cells, double than);

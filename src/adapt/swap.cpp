@@ -6,6 +6,7 @@
 
 #include <kropla/adapt/adapt.h>
 #include "adapt/constants.h"
+#include "adapt/propose.h"
 #include "base/tetrahedron.h"
 #include <kropla/mesh/quality.h>
 
@@ -174,6 +175,14 @@ std::optional<Cavity> edge_removal(const Mesh& mesh, const Shell& shell, Edge ed
     cavity.removed = shell.tets;
     add_tets({edge, shell.ring, mesh.region[shell.tets.front()], patch}, table, 0, shell.ring.size() - 1, cavity);
     return cavity;
+}
+
+bool fill_half(const Mesh& mesh, Edge edge, std::span<const Vertex> ring, Region region, Cavity& cavity) {
+    if (ring.size() > most) return false;
+    const auto table = triangulate_ring(mesh, edge, ring, Measure{}, infinity);
+    if (!(table.value[0][ring.size() - 1] < infinity)) return false;
+    add_tets({edge, ring, region, Patch{}}, table, 0, ring.size() - 1, cavity);
+    return true;
 }
 
 }  // namespace kropla

@@ -81,7 +81,7 @@ void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced) {
         zone.holds.erase(t);
         if (as_size(t.value) >= mesh.tets.size() || !alive(mesh, t)) return;
         for (Vertex v : mesh.tets[t]) touched.insert(v);
-        if (mesh.region[t] == surroundings) cells.push_back(t);
+        if (zone.takes(mesh.region[t])) cells.push_back(t);
     });
     for (Tet t : cells) zone.holds.insert(t);
     const auto is_old = [&](Tet t) { return replaced.contains(t); };

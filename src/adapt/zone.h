@@ -3,12 +3,15 @@
 #include <kropla/adapt/adapt.h>
 #include "adapt/star.h"
 #include "base/tetrahedron.h"
+#include "domain/deforming.h"
 #include "mesh/index_set.h"
+
+#include <algorithm>
 
 namespace kropla {
 
-/// A part of the surroundings that moves as a whole, as it is kept from step to step: its cells, the balls of its vertices
-/// and along which axes they may slide. `follow` brings it up to date, and looks again only at what was replaced. Arrays
+/// A part of the surroundings, and of bodies that deform, that moves as a whole, as it is kept from step to step: its cells,
+/// the balls of its vertices and along which axes they may slide. `follow` brings it up to date, and looks again only at what was replaced. Arrays
 /// are at least as long as the mesh's and hold something where the zone is.
 struct Zone {
     IndexSet<Tet> holds;
@@ -16,13 +19,18 @@ struct Zone {
     Array<Vertex, std::vector<Tet>> ball;  // the cells of the zone at a vertex, in ascending order
     Array<Vertex, unsigned char> axes;     // bits of the axes along which the vertex may slide, and `rim`
 
+    std::vector<Region> deforming;         // the bodies whose cells belong to it as the surroundings do
+
     static constexpr unsigned char all_axes = 7, rim = 8;  // rim: some of its cells are not in the zone
+    [[nodiscard]] bool takes(Region region) const {
+        return region == surroundings || std::ranges::find(deforming, region) != deforming.end();
+    }
 };
 
-/// Takes cells of one region in. Their vertices stay on the faces of the box they lie on; those that have cells out
+/// Takes cells in. Their vertices stay on the faces of the box they lie on; those that have cells out
 /// of the zone, or lie on an interface or another patch, are held.
 void add_cells(Zone& zone, const Mesh& mesh, std::span<const Tet> cells);
-/// The slots of `replaced` have lost their cells or have others, which join the zone if they are of the surroundings.
+/// The slots of `replaced` have lost their cells or have others, which join the zone if it takes cells of their region.
 /// The mesh may have fewer slots than before.
 void follow(Zone& zone, const Mesh& mesh, const IndexSet<Tet>& replaced);
 /// Leaves out all cells but these.
@@ -72,16 +80,22 @@ struct MoveReport {
     Tet limiting;          // the cell that stopped it, if it did not arrive
 };
 
-/// Finds where bodies that move rigidly from their places at `t0` to those at `t1` [s] take the vertices of their
-/// surroundings; nothing is moved yet. `bodies` are, per body, the vertices of its cells. `zone` is empty or follows
-/// the mesh; it comes to hold the surroundings that the displacement reaches, and may hold more. What moved since the
-/// motion began still counts as moving.
-void place_boundary(const Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                    double t1, Zone& zone, ZoneMotion& motion, Follow surroundings = Follow::spread);
+/// The bodies of a mesh, as they are to be moved.
+struct MovedBodies {
+    std::vector<std::vector<Vertex>> vertices;  // per body: of its cells; of one that deforms, of its surface
+    std::vector<DeformingSurface> deforming = {};
+    Follow surroundings = Follow::spread;
+};
+
+/// Finds where bodies that go from their places at `t0` to those at `t1` [s] take the vertices of their surroundings, and
+/// those within bodies that deform; nothing is moved yet. `zone` is empty or follows the mesh; it comes to hold what the
+/// displacement reaches, and may hold more. What moved since the motion began still counts as moving.
+void place_boundary(const Mesh& mesh, const Domain& domain, const MovedBodies& bodies, double t0, double t1, Zone& zone,
+                    ZoneMotion& motion);
 /// The same, and moves them there if every cell stays valid on the way; else tells how far it could go. Connectivity
 /// is unchanged.
-MoveReport move_boundary(Mesh& mesh, const Domain& domain, std::span<const std::vector<Vertex>> bodies, double t0,
-                         double t1, Zone& zone, ZoneMotion& motion, Follow surroundings = Follow::spread);
+MoveReport move_boundary(Mesh& mesh, const Domain& domain, const MovedBodies& bodies, double t0, double t1, Zone& zone,
+                         ZoneMotion& motion);
 
 [[nodiscard]] double aspect_ratio(const ZoneMotion& motion, const Mesh& mesh, Tet t);
 /// Of a vertex in the motion: none if it does not move by itself or is held.

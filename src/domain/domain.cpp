@@ -14,7 +14,9 @@ double thickness(const LayerOptions& layer) {
     return sum;
 }
 
-Shape shape_at(const Body& body, double t) { return placed(body.shape, body.motion(t)); }
+Shape shape_at(const Body& body, double t) {
+    return body.deformation ? body.shape : placed(body.shape, body.motion(t));
+}
 
 Snapshot snapshot(const Domain& domain, double t) {
     Snapshot at{domain.box, domain.size, {}};

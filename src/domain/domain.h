@@ -21,6 +21,10 @@ struct Box {
 /// Where a body is at time t [s].
 using Motion = std::function<Pose(double t)>;
 
+/// Where what is at the place `x` [m] at `t0` is at `t1` [s], after or before it. A smooth map without folds, asked for
+/// places in the body and around it; where `t1` is `t0`, `x`.
+using Deformation = std::function<Vec3(const Vec3& x, double t0, double t1)>;
+
 /// The prism layer asked for at a body's surface; the k-th prism of a column, from 0, is
 /// first_height * growth^k high.
 struct LayerOptions {
@@ -50,6 +54,8 @@ struct Body {
     std::string name;
     Shape shape;  // at t = 0 with the motion's displacement not yet applied
     Motion motion = [](double) { return Pose{}; };
+    Deformation deformation = {};  // none: it moves rigidly. Else its surface goes with it, motion is not asked, and of a
+                                   //   moving mesh's domain `shape` is what the mesh has at its time
     std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
 };
 

@@ -4,6 +4,7 @@ list(APPEND KROPLA_MESH_FILES
     domain/triangle_tree.cpp
     domain/triangulated_surface.cpp
     domain/of_mesh.cpp
+    domain/deforming.cpp
     domain/domain.cpp
     domain/gap.cpp
     domain/layer_fit.cpp

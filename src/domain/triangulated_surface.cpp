@@ -256,14 +256,35 @@ double TriangulatedSurface::signed_distance(const Vec3& x) const {
     return dot(x - nearest.point, outwards()) < 0 ? -far : far;
 }
 
-TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<Triangle> triangles) {
+namespace {
+
+/// The middle of the volume, or of what comes near it where this vanishes.
+Vec3 centroid_of(const Draft& d) {
+    const Vec3 origin = d.corner(0, 0);
+    double volume = 0;
+    Vec3 moment;
+    for (std::size_t t = 0; t < d.triangles.size(); ++t) {
+        const Corners c = d.corners(t);
+        const double below = volume_below(c, origin);
+        volume += below;
+        moment += below / 4 * (c[0] + c[1] + c[2] - 3 * origin);
+    }
+    return volume > 0 ? origin + moment / volume : origin;
+}
+
+}  // namespace
+
+TriangulatedSurface TriangulatedSurface::joined(std::vector<Vec3> points, std::vector<Triangle> triangles,
+                                                bool is_checked) {
     const Draft draft{points, triangles};
-    check_values(draft);
+    if (is_checked) check_values(draft);
     const Neighbours beyond = neighbours(draft);
-    check_rings(draft, beyond);
-    check_crossings(draft);
+    if (is_checked) {
+        check_rings(draft, beyond);
+        check_crossings(draft);
+    }
     const std::vector<std::size_t> part = parts_of(beyond), first = first_of_parts(part);
-    const bool turned = turn_out(draft, part);
+    const bool turned = is_checked && turn_out(draft, part);
     TriangulatedSurface surface(std::move(points), std::move(triangles));
     for (std::size_t t : first) surface.point_of_parts_.push_back(surface.tree_.corners(t)[0]);
     for (std::size_t t = 0; t < beyond.size(); ++t)
@@ -271,6 +292,16 @@ TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<Triangle>
             surface.edge_normal_[t][turned ? 2 - i : i] =
                 surface.inside_normal_[t] + surface.inside_normal_[beyond[t][i].triangle];
     return surface;
+}
+
+TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<Triangle> triangles) {
+    return TriangulatedSurface::joined(std::move(points), std::move(triangles), true);
+}
+
+Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles) {
+    const Vec3 centre = centroid_of({points, triangles});
+    for (Vec3& x : points) x -= centre;
+    return shape_within(TriangulatedSurface::joined(std::move(points), std::move(triangles), false), centre);
 }
 
 }  // namespace kropla

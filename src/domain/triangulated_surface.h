@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domain/triangle_tree.h"
+#include <kropla/domain/shape.h>
 
 namespace kropla {
 
@@ -26,7 +27,10 @@ public:
 
 private:
     friend TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+    friend Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
     TriangulatedSurface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+    static TriangulatedSurface joined(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles,
+                                      bool is_checked);
 
     TriangleTree tree_;
     std::vector<Vec3> inside_normal_;                // per triangle, of unit length
@@ -47,5 +51,9 @@ private:
 /// against each other, triangles touch in a point only, or cut each other, or a part lies within another and is turned
 /// as that one.
 [[nodiscard]] TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+
+/// What facets of a mesh bound where they are [m], its centre its centroid: they are known to be a closed surface that is
+/// turned out, and nothing is looked at but that each edge has two. For surfaces that are made anew in every step.
+[[nodiscard]] Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
 
 }  // namespace kropla

@@ -9,6 +9,7 @@
 #include "transfer/overlap.h"
 
 #include "base/tetrahedron.h"
+#include "mesh/box_tree.h"
 #include <kropla/mesh/cells.h>
 #include <kropla/mesh/topology.h>
 #include "transfer/clip.h"
@@ -20,6 +21,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
 
 namespace kropla {
 namespace {
@@ -70,7 +73,7 @@ void set_plane(const Mesh& mesh, OldCell& cell, int corner) {
 class OldCells {
 public:
     OldCells(const Mesh& mesh, std::span<const Tet> gone)
-        : gone_(gone), index_(gone.size()), cells_(gone.size()) {
+        : mesh_(mesh), gone_(gone), index_(gone.size()), cells_(gone.size()) {
         for (std::size_t i = 0; i < gone.size(); ++i)
             index_.insert(gone[i].value, static_cast<std::int32_t>(i));
         tbb::parallel_for(std::size_t{0}, gone.size(), [&](std::size_t i) {
@@ -90,10 +93,60 @@ public:
     [[nodiscard]] std::int32_t find(Tet t) const { return index_.find(t.value); }
     [[nodiscard]] Tet tet(std::int32_t i) const { return gone_[as_size(i)]; }
 
+    /// Each that has cells, once.
+    [[nodiscard]] std::vector<Region> regions() const {
+        std::vector<Region> all;
+        for (const OldCell& cell : cells_)
+            if (std::ranges::find(all, cell.region) == all.end()) all.push_back(cell.region);
+        return all;
+    }
+    /// Those of the region whose boxes meet this one, in ascending order.
+    void near(const Extent& box, Region region, std::vector<std::int32_t>& found) const {
+        found.clear();
+        (void)tree().any(box, [&](std::size_t i) {
+            if (cells_[i].region == region) found.push_back(static_cast<std::int32_t>(i));
+            return false;
+        });
+        std::ranges::sort(found);
+    }
+    /// That of the region whose box is nearest; -1 if there is none.
+    [[nodiscard]] std::int32_t nearest(const Vec3& x, Region region) const {
+        std::int32_t found = -1;
+        double least = Extent::infinite;
+        const auto from = [&](const Extent& box) { return box.squared_distance(x); };
+        (void)tree().least(from, [&](std::size_t i) {
+            const double d = cells_[i].region == region ? from(extent(i)) : Extent::infinite;
+            if (d < least) {
+                least = d;
+                found = static_cast<std::int32_t>(i);
+            }
+            return d;
+        });
+        return found;
+    }
+
 private:
+    [[nodiscard]] Extent extent(std::size_t i) const {
+        Extent box;
+        for (Vertex v : cells_[i].vertices) box.take_in(mesh_.position[v]);
+        return box;
+    }
+    /// Made when it is first asked for.
+    [[nodiscard]] const BoxTree& tree() const {
+        std::call_once(made_, [&] {
+            std::vector<Extent> boxes(cells_.size());
+            for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = extent(i);
+            tree_.emplace(std::move(boxes));
+        });
+        return *tree_;
+    }
+
+    const Mesh& mesh_;
     std::span<const Tet> gone_;
     SlotMap index_;
     std::vector<OldCell> cells_;
+    mutable std::once_flag made_;
+    mutable std::optional<BoxTree> tree_;
 };
 
 NewCell new_cell(const Mesh& before, const Mesh& after, Tet t) {
@@ -184,17 +237,30 @@ public:
         sum_ = 0;
         ++stamp_;
         if (const std::int32_t start = find(cell, slot); start >= 0) spread_from(start, cell);
-        if (std::abs(sum_ - 1) > covered) {
-            heed(watch_);  // as that is work by the number of all old cells
-            ++out.searched;
-            for (std::int32_t i = 0; i < old_.size(); ++i)
-                if (old_[i].region == cell.region && seen_[as_size(i)] != stamp_) visit(i, cell);
-        }
+        if (std::abs(sum_ - 1) > covered) search(cell, out);
         out.worst_gap = std::max(out.worst_gap, std::abs(sum_ - 1));
         write(cell, out);
     }
 
 private:
+    /// Tries all old cells near, as the walk may have missed one; where a surface has come to lie elsewhere, a new cell
+    /// reaches beyond the old ones of its region, and is covered by what there is, or, within none, by the nearest.
+    void search(const NewCell& cell, Overlaps::Chunk& out) {
+        heed(watch_);
+        ++out.searched;
+        Extent box;
+        for (std::size_t k = 0; k < 4; ++k) box.take_in({cell.x[k], cell.y[k], cell.z[k]});
+        old_.near(box, cell.region, near_cells_);
+        for (const std::int32_t i : near_cells_)
+            if (seen_[as_size(i)] != stamp_) visit(i, cell);
+        if (sum_ > 0) return;
+        const std::int32_t nearest = old_.nearest(cell.centre, cell.region);
+        if (nearest < 0) return;
+        sum_ = 1;
+        shares_ = {{nearest, 1}};
+        for (Vertex v : old_[nearest].vertices) weights_of(v) = {1.0 / 16, 1.0 / 16, 1.0 / 16, 1.0 / 16};
+    }
+
     /// An old cell that overlaps the new one: where a corner that both meshes have sees the new one's centre,
     /// or where the centre is. -1 if none is found.
     std::int32_t find(const NewCell& cell, Tet slot) {
@@ -355,7 +421,7 @@ private:
     std::uint32_t stamp_ = 0;
     std::int32_t last_ = -1;  // where the last walk ended
     std::vector<Vertex> near_;
-    std::vector<std::int32_t> queue_;
+    std::vector<std::int32_t> queue_, near_cells_;
     std::vector<NodalShare> nodal_;
     std::vector<CellShare> shares_;
     double sum_ = 0;
@@ -400,6 +466,32 @@ Overlaps overlaps(const Mesh& before, const Mesh& after, const ChangedCells& cha
         result.worst_gap = std::max(result.worst_gap, chunk.worst_gap);
     }
     return result;
+}
+
+std::vector<Location> locate_in_gone(const Mesh& before, const ChangedCells& changed, std::span<const Vec3> places) {
+    const OldCells old(before, changed.gone);
+    std::vector<Location> found(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t p) {
+        const auto weights_in = [&](std::int32_t i) {
+            std::array<double, 4> weights;
+            for (std::size_t k = 0; k < 4; ++k)
+                weights[k] = dot(old[i].inward[k], places[p] - old[i].on[k]) * old[i].inverse_height[k];
+            return weights;
+        };
+        Extent here;
+        here.take_in(places[p]);
+        std::vector<std::int32_t> near;
+        for (Region region : old.regions()) {
+            old.near(here, region, near);
+            if (near.empty()) near = {old.nearest(places[p], region)};
+            for (const std::int32_t i : near) {
+                const auto weights = weights_in(i);
+                const auto least = [](const std::array<double, 4>& w) { return std::min(0.0, *std::ranges::min_element(w)); };
+                if (!found[p].tet.exists() || least(weights) > least(found[p].weights)) found[p] = {old.tet(i), weights};
+            }
+        }
+    });
+    return found;
 }
 
 }  // namespace kropla

@@ -2,6 +2,7 @@
 
 #include <kropla/base/watch.h>
 #include "transfer/changed.h"
+#include <kropla/transfer/transfer.h>
 
 #include <array>
 #include <span>
@@ -41,11 +42,17 @@ struct Overlaps {
 
 /// Intersects each new cell with the old ones it overlaps, within its region. The old cells are found from
 /// neighbour to neighbour, starting from where the new cell's centre is; if their parts do not add up to the
-/// new cell to 1e-12, all old cells of the region are tried. Parts that meet at a facet of the old mesh share
+/// new cell to 1e-12, all old cells of the region near it are tried. What is left, where the region's surface has changed,
+/// is shared out as the rest is; a cell within no old one gets all from the nearest. Parts that meet at a facet of the old mesh share
 /// their cut, computed from the same plane by the same operations, so that they leave no gap and do not
 /// overlap, but for the rounding of the corners of the parts. The result does not depend on the number of
 /// threads. Throws Interrupted if the watch says so.
 [[nodiscard]] Overlaps overlaps(const Mesh& before, const Mesh& after, const ChangedCells& changed,
                                 const Watch* watch = nullptr);
+
+/// Where these places are among the old cells, of whatever region: in the cell whose weights are least negative, if none
+/// has it inside.
+[[nodiscard]] std::vector<Location> locate_in_gone(const Mesh& before, const ChangedCells& changed,
+                                                   std::span<const Vec3> places);
 
 }  // namespace kropla

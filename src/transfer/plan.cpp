@@ -12,38 +12,24 @@
 namespace kropla {
 namespace {
 
-/// A tet of the old mesh in the region of the new cell, near it.
-Tet old_tet_near(const TransferGeometry& geometry, std::size_t come) {
-    std::int32_t nearest = -1;
-    double most = -1;
-    for (const CellShare& share : geometry.overlaps.cell(come))
-        if (share.share > most) {
-            most = share.share;
-            nearest = share.gone;
-        }
-    return nearest < 0 ? Tet{} : geometry.changed.gone[static_cast<std::size_t>(nearest)];
-}
-
 /// Vertices of changed cells that are not free and do not stand where they stood.
-std::vector<GivenVertex> given_vertices(const TransferGeometry& geometry, const Mesh& before, const Mesh& after,
-                                        const Watch* watch) {
-    std::vector<GivenVertex> given;
+std::vector<GivenVertex> given_vertices(const TransferGeometry& geometry, const Mesh& before, const Mesh& after) {
+    std::vector<Vertex> vertices;
     for (const MassBlock& block : geometry.blocks)
-        for (const MassCell& cell : block.cells) {
-            if (cell.come < 0) continue;
-            for (std::size_t k = 0; k < 4; ++k) {
-                const Vertex v = after.tets[cell.tet][k];
-                if (cell.unknown[k] >= 0 || same_vertex(before, after, v)) continue;
-                const Tet start = old_tet_near(geometry, static_cast<std::size_t>(cell.come));
-                if (!start.exists()) continue;
-                heed(watch);  // a walk may end in a search
-                const Location found = locate(before, after.position[v], start);
-                given.push_back({v, before.tets[found.tet], found.weights});
-            }
-        }
-    std::ranges::stable_sort(given, {}, &GivenVertex::vertex);
-    const auto is_same = [](const GivenVertex& a, const GivenVertex& b) { return a.vertex == b.vertex; };
-    given.erase(std::unique(given.begin(), given.end(), is_same), given.end());
+        for (const MassCell& cell : block.cells)
+            for (std::size_t k = 0; k < 4; ++k)
+                if (const Vertex v = after.tets[cell.tet][k];
+                    cell.come >= 0 && cell.unknown[k] < 0 && !same_vertex(before, after, v))
+                    vertices.push_back(v);
+    if (vertices.empty() || geometry.changed.gone.empty()) return {};
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<Vec3> places;
+    for (Vertex v : vertices) places.push_back(after.position[v]);
+    const std::vector<Location> found = locate_in_gone(before, geometry.changed, places);
+    std::vector<GivenVertex> given;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        given.push_back({vertices[i], before.tets[found[i].tet], found[i].weights});
     return given;
 }
 
@@ -73,7 +59,7 @@ TransferPlan plan_of(const Mesh& before, const Mesh& after, ChangedCells changed
         heed(watch);
         geometry.blocks[c] = mass_block(before, after, geometry.changed, come, geometry.clusters, c);
     });
-    geometry.given = given_vertices(geometry, before, after, watch);
+    geometry.given = given_vertices(geometry, before, after);
     std::size_t cells = 0;
     for (const MassBlock& block : geometry.blocks) cells += block.cells.size();
     return {&before, &after, cells, std::move(planned)};

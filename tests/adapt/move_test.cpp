@@ -125,7 +125,7 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
         const Domain domain = moving_body({0.6, 0.7, 0.5}, 2);
         Mesh mesh = improved_mesh(domain, seed);
         const Mesh before = mesh;
-        const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
+        const MovedBodies bodies{{vertices_of_body(mesh)}};
         Zone zone;
         ZoneMotion motion;
         const MoveReport report = move_boundary(mesh, domain, bodies, 0, 0.04, zone, motion);
@@ -136,7 +136,7 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
         EXPECT_EQ(mesh.neighbour, before.neighbour);
 
         const Body& body = domain.bodies.front();
-        for (Vertex v : bodies.front()) {
+        for (Vertex v : bodies.vertices.front()) {
             const Vec3 there = placed(body.shape, body.motion(0.04), before.position[v]);
             EXPECT_LE(distance(mesh.position[v], there), 1e-14);
         }
@@ -147,7 +147,7 @@ TEST(MoveBoundary, MovesBodiesRigidlyAndNoWall) {
             for (int axis = 0; axis < 3; ++axis)
                 EXPECT_TRUE(slides.along[static_cast<std::size_t>(axis)] ||
                             mesh.position[v][axis] == before.position[v][axis] || on_interface(mesh, v));
-            if (std::ranges::find(bodies.front(), v) != bodies.front().end()) continue;
+            if (std::ranges::find(bodies.vertices.front(), v) != bodies.vertices.front().end()) continue;
             EXPECT_TRUE(zone.has.contains(v));
             ++free_moved;
         }
@@ -164,7 +164,7 @@ TEST(MoveBoundary, TellsHowFarItCouldGoAndLeavesTheMesh) {
     const Domain domain = moving_body({0.6, 0.6, 0.6}, 0);
     Mesh mesh = improved_mesh(domain, 1);
     const Mesh before = mesh;
-    const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
+    const MovedBodies bodies{{vertices_of_body(mesh)}};
     Zone zone;
     ZoneMotion motion;
     const MoveReport report = move_boundary(mesh, domain, bodies, 0, 1.5, zone, motion);
@@ -184,7 +184,7 @@ TEST(MoveBoundary, AtRestNothingMoves) {
     const Domain domain = sphere_in_box();
     Mesh mesh = improved_mesh(domain, 1);
     const Mesh before = mesh;
-    const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
+    const MovedBodies bodies{{vertices_of_body(mesh)}};
     Zone zone;
     ZoneMotion motion;
     EXPECT_TRUE(move_boundary(mesh, domain, bodies, 0, 1, zone, motion).arrived);
@@ -207,7 +207,7 @@ TEST(MoveBoundary, ABodyThatComesBackIsTheSameBitForBit) {
         Mesh mesh = improved_mesh(domain, 1);
         const double start = region_volume(mesh, Region(1)) / volume(domain.bodies[0].shape);
         EXPECT_NEAR(start, 1, 1e-12);
-        const std::vector<std::vector<Vertex>> bodies = {vertices_of_body(mesh)};
+        const MovedBodies bodies{{vertices_of_body(mesh)}};
         Zone zone;
         ZoneMotion motion;
         std::vector<Vec3> seen;
@@ -216,7 +216,7 @@ TEST(MoveBoundary, ABodyThatComesBackIsTheSameBitForBit) {
             ASSERT_NEAR(region_volume(mesh, Region(1)) / volume(domain.bodies[0].shape), 1, 1e-12) << i;
             if (i % lap != 0) continue;
             std::vector<Vec3> here;
-            for (Vertex v : bodies.front()) here.push_back(mesh.position[v]);
+            for (Vertex v : bodies.vertices.front()) here.push_back(mesh.position[v]);
             if (i > 0) {
                 ASSERT_EQ(here, seen) << "step " << i;
             }

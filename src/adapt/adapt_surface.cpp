@@ -1,0 +1,195 @@
+#include "adapt/adapt_surface.h"
+
+#include "adapt/constants.h"
+#include "adapt/propose.h"
+#include "adapt/surface.h"
+#include <kropla/mesh/cells.h>
+#include <kropla/mesh/quality.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace kropla {
+namespace {
+
+constexpr double flat_pair = 1.05 * std::numbers::pi;  // [rad] the sum of the angles across an edge, beyond which it is swapped
+constexpr double poor_angle = 0.6;                     // [rad] of a triangle, 34 degrees: its vertices are slid
+constexpr int rounds = 3;                              // of swaps and slides
+
+/// The surface of one body while it is adapted.
+class Surface {
+public:
+    Surface(Mesh& mesh, Region region, Array<Vertex, double>& size, const AdaptOptions& options)
+        : mesh_(mesh), region_(region), size_(size), options_(options) {}
+
+    /// All edges of the triangles, each once.
+    void take(std::span<const std::array<Vertex, 3>> triangles) {
+        for (const auto& [a, b, c] : triangles)
+            for (const Edge e : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
+                if (e.a < e.b) edges_.push_back(e);
+    }
+
+    void adapt_sizes() {
+        struct Wrong {
+            double ratio;
+            Edge edge;
+        };
+        std::vector<Wrong> wrong;
+        for (const Edge e : edges_)
+            if (const double r = ratio(e); r < options_.collapse_below || r > options_.split_above) wrong.push_back({r, e});
+        const auto rank = [](double r) { return r > 1 ? 1 + 1 / r : r; };
+        std::ranges::sort(wrong, {}, [&](const Wrong& w) { return std::tuple(rank(w.ratio), w.edge.a, w.edge.b); });
+        for (const auto& [was, edge] : wrong) {
+            heed(options_.watch);
+            const auto around = surface_shell(mesh_, edge, region_);
+            if (!around || ratio(edge) != was) continue;
+            if (was < 1) collapse(edge);
+            else split(edge, *around);
+        }
+        for (Vertex v : new_)
+            if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, region_), passable);
+    }
+
+    void adapt_shapes() {
+        for (int round = 0; round < rounds; ++round) {
+            bool helped = false;
+            const auto edges = edges_;
+            for (const Edge e : edges) {
+                heed(options_.watch);
+                const auto around = surface_shell(mesh_, e, region_);
+                if (!around || !is_flat_pair(e)) continue;
+                if (swap(e, *around, passable)) helped = true;
+            }
+            for (Vertex v : vertices()) {
+                const SurfaceStar star = surface_star(mesh_, v, region_);
+                if (least_angle(mesh_, star, mesh_.position[v]) >= poor_angle) continue;
+                if (try_change(slide(mesh_, v, region_), passable)) {
+                    ++changes.moved;
+                    helped = true;
+                }
+            }
+            if (!helped) return;
+        }
+    }
+
+    /// Whatever helps the cell, if it is at the surface.
+    bool help(Tet t) {
+        for (std::size_t k = 0; k < tet_edges.size(); ++k) {
+            const Edge e = tet_edge(mesh_, t, k);
+            const auto around = surface_shell(mesh_, e, region_);
+            if (!around) continue;
+            if (swap(e, *around, better)) return true;
+        }
+        const auto vertices = mesh_.tets[t];
+        for (Vertex v : vertices) {
+            if (surface_star(mesh_, v, region_).sides.empty()) continue;
+            if (try_change(slide_for_cells(mesh_, v, region_), better)) {
+                ++changes.moved;
+                return true;
+            }
+        }
+        return false;
+    }
+
+    Changes changes;
+
+private:
+    enum Demand { passable, better };
+
+    [[nodiscard]] double ratio(Edge e) const {
+        return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size_[e.a] + size_[e.b]) / 2);
+    }
+    [[nodiscard]] std::vector<Vertex> vertices() const {
+        std::vector<Vertex> all;
+        for (const Edge e : edges_)
+            for (Vertex v : {e.a, e.b})
+                if (alive(mesh_, v)) all.push_back(v);
+        std::ranges::sort(all);
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        return all;
+    }
+    /// The angles across the edge add up to more than those of a quadrangle in a circle.
+    [[nodiscard]] bool is_flat_pair(Edge e) const {
+        double sum = 0;
+        for (const auto& side : surface_star(mesh_, e.a, region_).sides) {
+            if (side[0] != e.b && side[1] != e.b) continue;
+            const Vec3& tip = mesh_.position[side[0] == e.b ? side[1] : side[0]];
+            const Vec3 p = mesh_.position[e.a] - tip, q = mesh_.position[e.b] - tip;
+            sum += std::atan2(norm(cross(p, q)), dot(p, q));
+        }
+        return sum > flat_pair;
+    }
+
+    bool try_change(const std::optional<SurfaceChange>& change, Demand demand) {
+        if (!change) return false;
+        const double most = demand == passable ? std::max(options_.passing, change->worst_before)
+                                               : (1 - least_gain) * change->worst_before;
+        if (change->worst_after > most) return false;
+        note(carry_out_surface(mesh_, *change, changes));
+        return true;
+    }
+    void note(const Replacement& done) {
+        if (done.vertices.empty()) return;
+        const Vertex v = done.vertices.front();
+        if (size_.size() < mesh_.position.size()) size_.resize(mesh_.position.size(), size_[v.value == 0 ? v : Vertex(0)]);
+        double sum = 0;
+        const auto around = ring(surface_star(mesh_, v, region_));
+        for (Vertex w : around) {
+            sum += size_[w];
+            edges_.push_back({std::min(v, w), std::max(v, w)});
+        }
+        size_[v] = sum / static_cast<double>(around.size());
+    }
+    void split(Edge e, const Shell& around) {
+        const SurfaceChange change = surface_split(mesh_, around, e);
+        if (change.worst_after > std::max(options_.passing, change.worst_before)) return;
+        const Replacement done = carry_out_surface(mesh_, change, changes);
+        note(done);
+        new_.push_back(done.vertices.front());
+        ++changes.splits;
+    }
+    bool collapse(Edge e) {
+        const double longest = longest_by_size * options_.split_above * (size_[e.a] + size_[e.b]) / 2;
+        if (!try_change(surface_collapse(mesh_, e, region_, longest), passable)) return false;
+        ++changes.collapses;
+        return true;
+    }
+    bool swap(Edge e, const Shell& around, Demand demand) {
+        const auto change = surface_swap(mesh_, around, e, region_);
+        if (!try_change(change, demand)) return false;
+        const Vertex c = change->moved[2].vertex, d = change->moved[3].vertex;
+        edges_.push_back({std::min(c, d), std::max(c, d)});
+        ++changes.swaps;
+        return true;
+    }
+
+    Mesh& mesh_;
+    Region region_;
+    Array<Vertex, double>& size_;
+    const AdaptOptions& options_;
+    std::vector<Edge> edges_;   // of the surface; some may be gone
+    std::vector<Vertex> new_;
+};
+
+}  // namespace
+
+Changes adapt_surface(Mesh& mesh, const DeformingSurface& surface, Array<Vertex, double>& size,
+                      const AdaptOptions& options) {
+    Surface adapted(mesh, region_of_body(surface.body), size, options);
+    adapted.take(surface.triangles);
+    adapted.adapt_sizes();
+    adapted.adapt_shapes();
+    return adapted.changes;
+}
+
+Changes improve_surface(Mesh& mesh, std::span<const Tet> cells, Region region, const AdaptOptions& options) {
+    Array<Vertex, double> unused(mesh.position.size(), 1);
+    Surface improved(mesh, region, unused, options);
+    for (Tet t : cells)
+        if (is_worse(mesh, t, options.good_enough)) (void)improved.help(t);
+    return improved.changes;
+}
+
+}  // namespace kropla
