@@ -26,7 +26,9 @@ std::string in_motion(const Domain& domain, std::size_t body, const Trouble& tro
     constexpr const char* help = "; a smaller size.surface or size.growth may help";
     const Body& moves = domain.bodies[body];
     if (trouble.time == trouble.start) return "the mesh near " + named(moves) + " is not good enough" + help;
-    const double way = way_between(moves.shape, moves.motion(trouble.start), moves.motion(trouble.time));
+    const double way = moves.deformation
+                           ? distance(trouble.place, moves.deformation(trouble.place, trouble.start, trouble.time))
+                           : way_between(moves.shape, moves.motion(trouble.start), moves.motion(trouble.time));
     return "the mesh near " + named(moves) + " does not follow it, which moves by " + metres(way) + ", " +
            written(way / domain.size.surface) + " of size.surface, within " +
            time_words(trouble.time - trouble.start) + help;

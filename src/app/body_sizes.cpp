@@ -32,7 +32,8 @@ std::string one_line(std::string name) {
 std::vector<BodySize> body_sizes(const Domain& domain, const Mesh& mesh) {
     std::vector<BodySize> sizes;
     for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
-        const auto& [name, shape, motion, layer] = domain.bodies[body];
+        const std::string& name = domain.bodies[body].name;
+        const Shape& shape = domain.bodies[body].shape;
         const auto triangles = region_surface(mesh, region_of_body(body)).interface;
         sizes.push_back({name, shape.semi_axes, volume(shape), region_volume(mesh, region_of_body(body)),
                          static_cast<int>(triangles.size()), mean_edge(mesh, triangles)});

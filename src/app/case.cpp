@@ -10,6 +10,7 @@
 #include "app/case_setting.h"
 #include "app/case_table.h"
 #include <kropla/base/error.h>
+#include <kropla/domain/words.h>
 #include "io/file.h"
 
 #include <fmt/format.h>
@@ -118,6 +119,17 @@ toml::table parse(std::string_view text, const std::string& name) {
     }
 }
 
+/// What does not know bodies that deform.
+void refuse_with_deforming(const CaseTable& file, const Case& it) {
+    const auto deforms = std::ranges::find_if(it.domain.bodies, [](const Body& body) { return bool(body.deformation); });
+    if (deforms == it.domain.bodies.end()) return;
+    const std::string why = fmt::format("is solved for around bodies that move rigidly; {} deforms "
+                                        "(motion.kind = \"field\")", named(*deforms));
+    for (const char* key : {"heat", "species", "flow"})
+        if (file.has(key)) file.refuse(key, why);
+    if (it.quality.paper) file.table("quality").refuse("method", fmt::format("\"paper\" moves rigid bodies; {} deforms", named(*deforms)));
+}
+
 }  // namespace
 
 Case parse_case(std::string_view text, const std::string& name, std::span<const std::string> settings) {
@@ -137,6 +149,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     read_species(file, it);
     read_flow(file, it);
     read_contact(file, it);
+    refuse_with_deforming(file, it);
     if (it.time.courant && !it.flow) file.table("time").refuse("courant", "needs [flow]: what is to cross no more cells in a step");
     if (file.has("output")) it.output = read_output(file.table("output"));
     if (file.has("random")) it.random = read_random(file.table("random"));

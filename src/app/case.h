@@ -55,8 +55,9 @@ using WrittenKeys = std::vector<std::pair<std::string, std::string>>;
 struct WrittenBody {
     std::string shape;  // "sphere" or "ellipsoid", without quotes
     std::string rotation;
-    std::array<std::string, 3> motion;  // all empty: at rest, or free
+    std::array<std::string, 3> motion;  // all empty: at rest, or not by a path
     WrittenKeys free;                   // its motion, if it goes where forces take it
+    std::string velocity;               // of its surface, if it deforms; else empty
     std::string angle, axis;            // of the motion; both empty: it does not turn
 };
 struct WrittenHeat {

@@ -1,6 +1,8 @@
 // Reading [[body]]: shape, motion and prism layer.
 #include "app/case_body.h"
 
+#include "app/deformation.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -138,6 +140,13 @@ Motion read_path(const CaseTable& table, WrittenBody& written) {
     };
 }
 
+Deformation read_field(const CaseTable& table, const std::string& which, WrittenBody& written) {
+    table.allow({"kind", "velocity"});
+    const auto velocity = table.formulas("velocity", 3, "[u, v, w] [m/s], of x, y, z and t", Variables::time_and_place);
+    written.velocity = fmt::format("[{}, {}, {}]", velocity[0].written, velocity[1].written, velocity[2].written);
+    return deformation_by({velocity[0].value, velocity[1].value, velocity[2].value}, which + ".motion.velocity");
+}
+
 /// To three digits, rounded down: what is advised shall really do.
 double rounded_down(double value) {
     const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2);
@@ -194,9 +203,13 @@ void read_bodies(const CaseTable& file, Case& it) {
             const std::string kind = motion.has("kind") ? motion.text("kind") : "path";
             if (kind == "free") it.free.back() = read_free(motion, written.free);
             else if (kind == "path") body.motion = read_path(motion, written);
-            else motion.refuse_value("kind", "must be \"path\" or \"free\"");
+            else if (kind == "field")
+                body.deformation = read_field(motion, fmt::format("body[{}]", it.domain.bodies.size()), written);
+            else motion.refuse_value("kind", "must be \"path\", \"field\" or \"free\"");
         }
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
+        if (body.layer && body.deformation)
+            table.refuse("layer", "stands on bodies that move rigidly; this one deforms (motion.kind = \"field\")");
         it.domain.bodies.push_back(std::move(body));
         it.written_bodies.push_back(std::move(written));
     }

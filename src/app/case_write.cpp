@@ -48,6 +48,8 @@ std::string body(const Case& it, std::size_t number) {
     const auto& [x, y, z] = written.motion;
     if (!x.empty()) text += fmt::format("[body.motion]\nx = {}\ny = {}\nz = {}\n", x, y, z);
     if (!written.free.empty()) text += "[body.motion]\nkind = \"free\"\n" + keys(it, table + ".motion", written.free);
+    if (!written.velocity.empty())
+        text += "[body.motion]\nkind = \"field\"\n" + line(it, table + ".motion", "velocity", written.velocity);
     if (!written.angle.empty()) text += fmt::format("angle = {}\naxis = {}\n", written.angle, written.axis);
     if (body.layer) text += layer(it, *body.layer, table + ".layer");
     return text;
