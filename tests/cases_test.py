@@ -40,28 +40,34 @@ SHORT = {
     "two_droplets": Short(0.004, 5, 5.5, 22.2),
 }
 @dataclass
-class ShortFlow:
-    """A case with a flow, coarser and shorter. Columns of the last step are within bounds: of the drag in the cube, what is
+class ShortRun:
+    """A case with a flow, or with a body that deforms, coarser and shorter. Columns of the last step are within bounds: of the drag in the cube, what is
     known, give or take a tenth more than it is off; else what was reached, give or take little."""
 
     settings: list
     bounds: dict  # column: (least, most)
 
 
-FLOWS = {
-    "stokes_cube": ShortFlow(["size.surface=2.5e-3", "size.far=0.012", "time.steps=1", "time.end=0.02"],
+RUNS = {
+    "stokes_cube": ShortRun(["size.surface=2.5e-3", "size.far=0.012", "time.steps=1", "time.end=0.02"],
                              {"force_z_sphere [N]": (-0.0030647, -0.0029735)}),
-    "sphere_re100": ShortFlow(["size.surface=0.15", "size.growth=0.3", "size.far=3", "time.steps=6", "time.end=6"],
+    "sphere_re100": ShortRun(["size.surface=0.15", "size.growth=0.3", "size.far=3", "time.steps=6", "time.end=6"],
                               {"force_x_sphere [N]": (0.470, 0.475)}),
-    "settling": ShortFlow(["size.surface=2.5e-3", "size.growth=0.3", "size.far=0.02", "time.steps=3", "time.end=0.06"],
+    "settling": ShortRun(["size.surface=2.5e-3", "size.growth=0.3", "size.far=0.02", "time.steps=3", "time.end=0.06"],
                           {"w_sphere [m/s]": (-0.0284, -0.0280), "flow_rounds": (1, 5)}),
     # The upper one is about to touch the other.
-    "two_settling": ShortFlow(["body.upper.centre=[0.0006, 0, 0.0668]", "body.upper.motion.velocity=[0, 0, -0.05]",
+    "two_settling": ShortRun(["body.upper.centre=[0.0006, 0, 0.0668]", "body.upper.motion.velocity=[0, 0, -0.05]",
                                "size.surface=1.4e-3", "size.growth=0.4", "size.far=0.01", "time.steps=1", "time.end=0.01"],
                               {"contacts": (1, 1), "gap_upper [m]": (5.53e-4, 5.54e-4)}),
-    "arc_flight": ShortFlow(["size.surface=2.2e-4", "size.growth=0.3", "size.far=1.5e-3", "time.steps=3", "time.end=3e-4"],
+    "arc_flight": ShortRun(["size.surface=2.2e-4", "size.growth=0.3", "size.far=1.5e-3", "time.steps=3", "time.end=3e-4"],
                             {"w_droplet [m/s]": (-0.437, -0.433), "temperature_mean_droplet [K]": (2402.3, 2402.8),
                              "temperature_max_droplet [K]": (2415, 2418)}),
+    "vortex": ShortRun(["size.surface=0.05", "size.growth=0.3", "parameters.period=0.6", "time.end=0.6", "time.steps=20"],
+                       {"max_aspect_ratio": (4.8, 5.5), "min_dihedral [deg]": (20, 40),
+                        "volume_drop [m^3]": (0.014136, 0.014139), "area_drop [m^2]": (0.2827, 0.286)}),
+    "breathing": ShortRun(["size.surface=8e-4", "size.far=1.5e-3", "time.steps=10", "time.end=0.5"],
+                          {"max_aspect_ratio": (4.8, 5.5), "min_dihedral [deg]": (20, 40),
+                           "volume_bubble [m^3]": (6.0318e-8, 6.0319e-8)}),
 }
 CONSERVED = 1e-12  # [-] energy and volumes over the whole run, and each transfer: rounding
 
@@ -106,8 +112,8 @@ def faults_of(name, verdict, rows):
     return faults
 
 
-def faults_of_flow(program, name):
-    short = FLOWS[name]
+def faults_of_run(program, name):
+    short = RUNS[name]
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
         sets = [word for setting in short.settings for word in ("--set", setting)]
@@ -127,11 +133,11 @@ def faults_of_flow(program, name):
 
 
 def main():
-    program, names = sys.argv[1], sys.argv[2:] or [*SHORT, *FLOWS]
-    missing = {path.stem for path in CASES.glob("*.toml")} ^ {*SHORT, *FLOWS}
+    program, names = sys.argv[1], sys.argv[2:] or [*SHORT, *RUNS]
+    missing = {path.stem for path in CASES.glob("*.toml")} ^ {*SHORT, *RUNS}
     faults = [f"{name}: not both a case and a short form" for name in missing]
     for name in names:
-        found = faults_of_flow(program, name) if name in FLOWS else faults_of(name, *verdict_on(program, name))
+        found = faults_of_run(program, name) if name in RUNS else faults_of(name, *verdict_on(program, name))
         faults += [f"{name}: {fault}" for fault in found]
     print("\n".join(faults))
     return 1 if faults else 0

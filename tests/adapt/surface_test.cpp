@@ -1,0 +1,122 @@
+// Operators on the surface of a region: each keeps the volume inside, and leaves a mesh.
+
+#include "adapt/adapt_surface.h"
+#include "adapt/cases.h"
+#include "adapt/surface.h"
+#include "base/random.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/verify.h>
+#include <kropla/step/initial_mesh.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace kropla {
+namespace {
+
+constexpr Region body{1};
+
+Domain finer_sphere() {
+    Domain domain = sphere_in_box();
+    domain.size.surface = 0.25;
+    domain.bodies.front().deformation = [](const Vec3& x, double, double) { return x; };
+    return domain;
+}
+
+std::vector<Edge> edges_of(const DeformingSurface& surface) {
+    std::vector<Edge> edges;
+    for (const auto& [a, b, c] : surface.triangles)
+        for (const Edge e : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
+            if (e.a < e.b) edges.push_back(e);
+    return edges;
+}
+
+/// Carries out what `propose` says of random edges of the surface, `count` times at least.
+template <class Propose>
+void expect_volume_kept(int count, const Propose& propose) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const Domain domain = finer_sphere();
+        Mesh mesh = initial_mesh(domain, seed);
+        const double before = region_volume(mesh, body), whole = before + region_volume(mesh, surroundings);
+        Random random{seed};
+        Changes changes;
+        int done = 0;
+        for (int tries = 0; tries < 40 * count && done < count; ++tries) {
+            const auto edges = edges_of(deforming_surfaces(domain, mesh).front());
+            const Edge edge = edges[random.below(edges.size())];
+            const auto around = surface_shell(mesh, edge, body);
+            ASSERT_TRUE(around);
+            const std::optional<SurfaceChange> change = propose(mesh, *around, edge);
+            if (!change) continue;
+            const double here = region_volume(mesh, body);
+            (void)carry_out_surface(mesh, *change, changes);
+            ASSERT_NEAR(region_volume(mesh, body), here, 1e-15 * whole);
+            ASSERT_EQ(verify(mesh), "");
+            double worst = 0;
+            for (Tet t : changes.cells)
+                if (alive(mesh, t)) worst = std::max(worst, aspect_ratio(mesh, t));
+            ASSERT_LT(worst, std::numeric_limits<double>::infinity());
+            ++done;
+        }
+        EXPECT_EQ(done, count);
+        EXPECT_NEAR(region_volume(mesh, body) + region_volume(mesh, surroundings), whole, 1e-13 * whole);
+    }
+}
+
+TEST(SurfaceOperators, ASplitKeepsTheVolume) {
+    expect_volume_kept(20, [](const Mesh& mesh, const Shell& around, Edge edge) {
+        return std::optional(surface_split(mesh, around, edge));
+    });
+}
+TEST(SurfaceOperators, ACollapseKeepsTheVolume) {
+    expect_volume_kept(10, [](const Mesh& mesh, const Shell&, Edge edge) { return surface_collapse(mesh, edge, body, 1); });
+}
+TEST(SurfaceOperators, ASwapKeepsTheVolume) {
+    expect_volume_kept(20, [](const Mesh& mesh, const Shell& around, Edge edge) {
+        return surface_swap(mesh, around, edge, body);
+    });
+}
+TEST(SurfaceOperators, SlidesAndRaisesKeepTheVolume) {
+    expect_volume_kept(20, [](const Mesh& mesh, const Shell&, Edge edge) { return slide(mesh, edge.a, body); });
+    expect_volume_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return slide_for_cells(mesh, edge.a, body); });
+    expect_volume_kept(20, [](const Mesh& mesh, const Shell&, Edge edge) { return raise_to_quadric(mesh, edge.a, body); });
+}
+
+TEST(SurfaceOperators, AVertexOfASplitComesToBeOnTheSphere) {
+    const Domain domain = finer_sphere();
+    Mesh mesh = initial_mesh(domain, 1);
+    Changes changes;
+    double flat = 0, raised = 0;
+    const auto out = [&](Vertex v) { return norm(mesh.position[v]); };
+    const Edge edge = edges_of(deforming_surfaces(domain, mesh).front()).front();
+    const double radius = (out(edge.a) + out(edge.b)) / 2;
+    const auto done = carry_out_surface(mesh, surface_split(mesh, *surface_shell(mesh, edge, body), edge), changes);
+    const Vertex v = done.vertices.front();
+    flat = std::abs(out(v) - radius);
+    const auto change = raise_to_quadric(mesh, v, body);
+    ASSERT_TRUE(change);
+    (void)carry_out_surface(mesh, *change, changes);
+    raised = std::abs(out(v) - radius);
+    EXPECT_GE(flat, 0.01);
+    EXPECT_LE(raised, 0.25 * flat);
+}
+
+TEST(SurfaceOperators, SharpEdgesAreLeftAlone) {
+    // The octahedron around a vertex is sharp at each edge, if its cells are a region of their own.
+    Domain domain = finer_sphere();
+    domain.size.surface = 0.55;
+    domain.bodies.front().shape.semi_axes = {0.6, 0.6, 0.6};
+    const Mesh mesh = initial_mesh(domain, 1);
+    for (const Edge edge : edges_of(deforming_surfaces(domain, mesh).front())) {
+        const bool sharp = is_sharp(surface_star(mesh, edge.a, body), mesh) && is_sharp(surface_star(mesh, edge.b, body), mesh);
+        if (!sharp) continue;
+        EXPECT_FALSE(surface_collapse(mesh, edge, body, 10));
+        EXPECT_FALSE(slide(mesh, edge.a, body));
+        EXPECT_FALSE(raise_to_quadric(mesh, edge.b, body));
+    }
+}
+
+}  // namespace
+}  // namespace kropla

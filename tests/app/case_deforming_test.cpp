@@ -1,0 +1,110 @@
+// Bodies that deform: their keys, and runs of them.
+#include "app/case.h"
+#include "case_text.h"
+#include "run_results.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace kropla {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view drop_case = R"toml([domain]
+min = [0.0, 0.0, 0.0]
+max = [1.0, 1.0, 1.0]
+[[body]]
+name = "drop"
+shape = "sphere"
+centre = [0.5, 0.5, 0.5]
+radius = 0.2
+[body.motion]
+kind = "field"
+velocity = ["0.5*sin(pi*x)*cos(pi*y)", "-0.5*cos(pi*x)*sin(pi*y)", 0]
+[size]
+surface = 0.08
+growth = 0.3
+far = 0.2
+[time]
+end = 0.6
+steps = 4
+)toml";
+
+TEST(CaseDeforming, AVelocityTakesPlacesAlong) {
+    const Case it = parse_case(replaced(drop_case, "[\"0.5*sin(pi*x)*cos(pi*y)\", \"-0.5*cos(pi*x)*sin(pi*y)\", 0]",
+                                        "[\"-y\", \"x\", \"t\"]"), "case.toml");
+    const Deformation& deformation = it.domain.bodies[0].deformation;
+    ASSERT_TRUE(deformation);
+    const Vec3 there = deformation({2, 0, 1}, 0.1, 0.5);  // turned, by the classical method to the fourth power
+    EXPECT_NEAR(there.x, 2 * std::cos(0.4), 2e-5);
+    EXPECT_NEAR(there.y, 2 * std::sin(0.4), 2e-5);
+    EXPECT_NEAR(there.z, 1 + (0.25 - 0.01) / 2, 1e-15);
+    const Vec3 here = deformation(there, 0.5, 0.1);
+    EXPECT_LE(distance(here, {2, 0, 1}), 4e-6);
+}
+
+TEST(CaseDeforming, IsWrittenAsItWasRead) {
+    const Case it = parse_case(std::string(drop_case), "case.toml");
+    const std::string written = to_toml(it);
+    EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
+    EXPECT_NE(written.find("kind = \"field\""), std::string::npos);
+}
+
+TEST(CaseDeforming, RefusalsNameKeyAndLine) {
+    const auto refused = [](std::string_view from, std::string_view to) { return refusal(replaced(drop_case, from, to)); };
+    EXPECT_EQ(refused("velocity", "speed"),
+              "case.toml: body[0].motion.speed (line 11): unknown key; known here: kind, velocity");
+    EXPECT_EQ(refused("\"-0.5*cos(pi*x)*sin(pi*y)\", 0]", "0]").substr(0, 43),
+              "case.toml: body[0].motion.velocity (line 11");
+    EXPECT_EQ(refused("\"field\"", "\"fields\""), "case.toml: body[0].motion.kind (line 10): must be \"path\", \"field\" or "
+                                                 "\"free\", got \"fields\"");
+    EXPECT_EQ(refused("[size]", "[body.layer]\ncount = 2\n[size]"),
+              "case.toml: body[0].layer (line 12): stands on bodies that move rigidly; this one deforms "
+              "(motion.kind = \"field\")");
+    EXPECT_EQ(refused("[time]", "[quality]\nmethod = \"paper\"\n[time]"),
+              "case.toml: quality.method (line 17): \"paper\" moves rigid bodies; body \"drop\" deforms");
+    EXPECT_EQ(refused("steps = 4\n", "steps = 4\n[flow]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n"),
+              "case.toml: flow (line 19): is solved for around bodies that move rigidly; body \"drop\" deforms "
+              "(motion.kind = \"field\")");
+}
+
+TEST(RunDeforming, KeepsTheVolumeOfAFlowThatDoes) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", std::string(drop_case));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const auto columns = lasting_columns(folder.path / "d");
+    const auto& volumes = columns.at("volume_drop");
+    ASSERT_EQ(volumes.size(), 4u);
+    for (const std::string& v : volumes) EXPECT_NEAR(std::stod(v), 4.0 / 3 * std::numbers::pi * 0.008, 1.1e-5 * 0.0335);
+    for (const std::string& r : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(r), 5.5);
+    EXPECT_EQ(kropla_program(folder, "check d").code, 0);
+}
+
+// Stopped at a time that has a checkpoint, and gone on with a later end: the same mesh as in one go, bit for bit.
+TEST(RunDeforming, GoesOnAsIfItHadNotStopped) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", std::string(drop_case));
+    ASSERT_EQ(kropla_program(folder, "run a.toml --out whole").code, 0);
+    write(folder.path / "a.toml", replaced(replaced(drop_case, "end = 0.6", "end = 0.3"), "steps = 4", "steps = 2"));
+    ASSERT_EQ(kropla_program(folder, "run a.toml --out d").code, 0);
+    write(folder.path / "a.toml", std::string(drop_case));
+    const Outcome rest = kropla_program(folder, "run a.toml --out d --resume");
+    ASSERT_EQ(rest.code, 0) << rest.err;
+    EXPECT_EQ(frames(folder.path / "d").at("00004.vtu"), frames(folder.path / "whole").at("00004.vtu"));
+}
+
+TEST(RunDeforming, AVelocityThatIsNoNumberEndsTheRunByItsName) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", replaced(drop_case, "sin(pi*y)\", 0]", "sin(pi*y)\", \"sqrt(0.4 - t)\"]"));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(it.code, 2);
+    EXPECT_NE(it.err.find("a.toml: body[0].motion.velocity: is not a number at ("), std::string::npos) << it.err;
+    EXPECT_TRUE(fs::exists(folder.path / "d/report.html"));
+}
+
+}  // namespace
+}  // namespace kropla
