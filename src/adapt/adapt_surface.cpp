@@ -52,6 +52,21 @@ public:
             if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, region_), passable);
     }
 
+    /// From now on, only edges are looked at that have changed, and those around them.
+    void keep_to_changed() {
+        edges_.clear();
+        for (Vertex v : changes.vertices) {
+            if (!alive(mesh_, v)) continue;
+            for (const auto& [a, b] : surface_star(mesh_, v, region_).sides) {
+                edges_.push_back({std::min(a, b), std::max(a, b)});
+                edges_.push_back({std::min(a, v), std::max(a, v)});
+            }
+        }
+        const auto order = [](Edge a, Edge b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); };
+        std::ranges::sort(edges_, order);
+        edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    }
+
     void adapt_shapes() {
         for (int round = 0; round < rounds; ++round) {
             bool helped = false;
@@ -175,11 +190,20 @@ private:
 
 }  // namespace
 
-Changes adapt_surface(Mesh& mesh, const DeformingSurface& surface, Array<Vertex, double>& size,
+bool has_wrong_size(const Mesh& mesh, const BodySurface& surface, const Array<Vertex, double>& size,
+                    const AdaptOptions& options) {
+    return std::ranges::any_of(surface.triangles, [&](const std::array<Vertex, 3>& t) {
+        const double ratio = distance(mesh.position[t[0]], mesh.position[t[1]]) / ((size[t[0]] + size[t[1]]) / 2);
+        return ratio < options.collapse_below || ratio > options.split_above;  // each edge is the first of a triangle at it
+    });
+}
+
+Changes adapt_surface(Mesh& mesh, const BodySurface& surface, Array<Vertex, double>& size, bool all,
                       const AdaptOptions& options) {
     Surface adapted(mesh, region_of_body(surface.body), size, options);
     adapted.take(surface.triangles);
     adapted.adapt_sizes();
+    if (!all) adapted.keep_to_changed();
     adapted.adapt_shapes();
     return adapted.changes;
 }

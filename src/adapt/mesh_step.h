@@ -67,8 +67,9 @@ private:
         Motion before;  // what the domain had
     };
 
-    /// Looks for the surfaces of deforming bodies in the reference.
+    /// Looks for the surfaces of deforming bodies in the reference; for what gaps have left uneven.
     void find_deforming();
+    void find_uneven();
     /// With the bodies where the current mesh has them.
     [[nodiscard]] Snapshot snapshot_at(double t) const;
     [[nodiscard]] std::optional<Refusal> what_limits() const;
@@ -82,6 +83,9 @@ private:
     Changes refine_by_paper();
     Changes remesh_by_size(const AdaptOptions& options);
     Changes remesh_by_paper();
+    /// The surfaces that are to be adapted: of bodies that deform, and of those whose triangles do not have the sizes that
+    /// gaps ask for, or had to have.
+    [[nodiscard]] std::vector<BodySurface> surfaces_to_adapt(const Snapshot& at_time);
     void adapt_surfaces(const Snapshot& at_time, const AdaptOptions& options, Changes& changes);
     void improve_surfaces(std::vector<Tet> cells, const Snapshot& at_time, const AdaptOptions& options, Changes& changes);
     void move_in_legs();
@@ -96,6 +100,8 @@ private:
     std::map<std::size_t, Told> told_;       // by bodies: this step
     AdaptOptions options_;
     MovedBodies bodies_;
+    std::vector<BodySurface> adapted_;  // surfaces that the step changes
+    std::vector<char> is_uneven_;    // per body: its triangles became smaller once for the sake of a gap
     std::vector<Tet> at_inner_shells_;         // cells of bodies that do not move rigidly: at the shells of inner layers
     Mesh reference_, before_, current_;
     double time_, target_time_;

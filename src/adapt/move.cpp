@@ -173,7 +173,7 @@ void place_bodies(const Mesh& mesh, std::span<const Travel> travels, std::span<c
 /// normals by the volume that is between the flat triangles and the curved ones, so that the volume inside becomes what the
 /// flow makes of it, place by place: to the fourth power of the edges, not to the second. The curved triangle is the
 /// quadratic one through the images of the middles of its edges.
-void keep_with_flow(const Mesh& mesh, const Travel& travel, const DeformingSurface& surface, ZoneMotion& motion) {
+void keep_with_flow(const Mesh& mesh, const Travel& travel, const BodySurface& surface, ZoneMotion& motion) {
     const auto number = [&](Vertex v) {
         return static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
     };
@@ -253,9 +253,9 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, const MovedBod
         if (const auto t = tet_beside(mesh, body, region)) cells.push_back(*t);
     };
     zone.deforming.clear();
-    for (const DeformingSurface& surface : bodies.deforming) zone.deforming.push_back(region_of_body(surface.body));
+    for (const BodySurface& surface : bodies.deforming) zone.deforming.push_back(region_of_body(surface.body));
     for (const auto& body : bodies.vertices) begin_with(body, surroundings);
-    for (const DeformingSurface& surface : bodies.deforming) begin_with(surface.vertices, region_of_body(surface.body));
+    for (const BodySurface& surface : bodies.deforming) begin_with(surface.vertices, region_of_body(surface.body));
     add_cells(zone, mesh, cells);
     auto front = zone.has.list();
     std::vector<Tet> around;
@@ -311,14 +311,14 @@ void list_and_shrink(const Mesh& mesh, Zone& zone, ZoneMotion& motion) {
 
 void place_boundary(const Mesh& mesh, const Domain& domain, const MovedBodies& bodies, double t0, double t1, Zone& zone,
                     ZoneMotion& motion) {
-    const Snapshot at_start = snapshot(domain, t0, bodies.deforming, mesh.position);
+    const Snapshot at_start = snapshot(domain, t0, bodies.deforming, mesh.position, bodies.uneven);
     const std::vector<Travel> travelling = travels(domain, at_start, t0, t1);
     reach_out(mesh, travelling, bodies, zone);
     fit(motion, mesh);
     place_bodies(mesh, travelling, bodies.vertices, motion);
-    for (const DeformingSurface& surface : bodies.deforming)
+    for (const BodySurface& surface : bodies.deforming)
         keep_with_flow(mesh, travelling[surface.body], surface, motion);
-    const Snapshot at_end = snapshot(domain, t1, bodies.deforming, motion.place);
+    const Snapshot at_end = snapshot(domain, t1, bodies.deforming, motion.place, bodies.uneven);
     place_columns(mesh, at_end, motion);
     place_others(mesh, at_start, travelling, bodies.surroundings, zone, motion);
     list_and_shrink(mesh, zone, motion);

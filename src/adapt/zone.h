@@ -3,7 +3,7 @@
 #include <kropla/adapt/adapt.h>
 #include "adapt/star.h"
 #include "base/tetrahedron.h"
-#include "domain/deforming.h"
+#include "domain/body_surface.h"
 #include "mesh/index_set.h"
 
 #include <algorithm>
@@ -83,8 +83,9 @@ struct MoveReport {
 /// The bodies of a mesh, as they are to be moved.
 struct MovedBodies {
     std::vector<std::vector<Vertex>> vertices;  // per body: of its cells; of one that deforms, of its surface
-    std::vector<DeformingSurface> deforming = {};
+    std::vector<BodySurface> deforming = {};
     Follow surroundings = Follow::spread;
+    bool uneven = false;  // some have triangles that are smaller for the sake of a gap
 };
 
 /// Finds where bodies that go from their places at `t0` to those at `t1` [s] take the vertices of their surroundings, and

@@ -38,27 +38,30 @@ Box read_box(const CaseTable& table) {
 }
 
 /// Throws if at the box's coordinates doubles are too coarse for the size.
-void check_resolved(const CaseTable& table, double surface, const Box& box) {
+void check_resolved(const CaseTable& table, const char* key, double size, const Box& box) {
     double farthest = 0;
     for (int axis = 0; axis < 3; ++axis)
         farthest = std::max({farthest, std::abs(box.min[axis]), std::abs(box.max[axis])});
-    if (surface >= least_resolved * farthest) return;
-    table.refuse_value("surface", fmt::format("must be at least {:.1e} m where coordinates go up to {:.3g} m, for the "
+    if (size >= least_resolved * farthest) return;
+    table.refuse_value(key, fmt::format("must be at least {:.1e} m where coordinates go up to {:.3g} m, for the "
                                               "sake of rounding (a box nearer to the origin allows less)",
                                               least_resolved * farthest, farthest));
 }
 
 SizeField read_size(const CaseTable& table, const Box& box) {
-    table.allow({"surface", "growth", "far"});
+    table.allow({"surface", "growth", "far", "least"});
     SizeField size;
     size.surface = table.length("surface");
-    check_resolved(table, size.surface, box);
+    check_resolved(table, "surface", size.surface, box);
     size.far = table.length("far");
     if (table.has("growth")) size.growth = table.number("growth");
     if (!(size.growth >= 0 && size.growth <= 1)) table.refuse_value("growth", "must be from 0 to 1");
     if (size.far < size.surface) {
         table.refuse_value("far", fmt::format("must be at least surface = {}", size.surface));
     }
+    if (table.has("least")) size.least = table.length("least");
+    if (least_size(size) > size.surface) table.refuse_value("least", fmt::format("must be at most surface = {}", size.surface));
+    if (size.least) check_resolved(table, "least", *size.least, box);
     return size;
 }
 

@@ -27,6 +27,12 @@ double largest_extent(const Box& box) {
     return std::max({span.x, span.y, span.z});
 }
 
+/// How short edges may become in the gap [m]: where a body has a layer they stay as they are.
+double finest(const Domain& domain, const Approach& gap) {
+    const bool layered = domain.bodies[gap.body].layer || (gap.wall < 0 && domain.bodies[gap.other].layer);
+    return layered ? domain.size.surface : least_size(domain.size);
+}
+
 /// The surface sizes that one gap has room for if that many are to fit.
 SizeLimit limit_of(const Domain& domain, const Approach& gap, double in_sizes) {
     return {size_for_gap(domain, gap, in_sizes),
@@ -151,7 +157,7 @@ Allowed look_at_all(const Case& it, const Watch* watch) {
     const double sure = doubtful_gap(it.quality.max_aspect_ratio), least = hopeless_share * sure;
     Allowed all{surface_limit(it.domain, 0, least_gap_in_sizes), look(it, watch)};
     for (const Approach& gap : all.seen.closest) {
-        if (size_for_gap(it.domain, gap, least) >= it.domain.size.surface) continue;
+        if (size_for_gap(it.domain, gap, least) >= finest(it.domain, gap)) continue;
         const SizeLimit on_way = limit_of(it.domain, gap, sure);  // what is advised shall really do
         if (on_way.most < all.limit.most) all.limit = on_way;
     }
@@ -287,7 +293,7 @@ std::vector<std::string> foresee(const Case& it, const Watch* watch) {
         check_layer_gap(domain, gap);
         const double needed =
             neediest_layer(domain, gap) != nullptr ? doubtful / (1 - share_of_gap) : doubtful;
-        if (size_for_gap(domain, gap, needed) < domain.size.surface)
+        if (size_for_gap(domain, gap, needed) < finest(domain, gap))
             warnings.push_back(doubt(it, gap, needed));
     }
     check_sizes(it, all.limit, watch);

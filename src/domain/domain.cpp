@@ -2,6 +2,9 @@
 
 #include <kropla/domain/domain.h>
 
+#include "domain/approach.h"
+#include "domain/triangle_tree.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -69,15 +72,82 @@ double rising_distance(const Snapshot& at, std::size_t body, double from_wall) {
     return in_layered ? std::max(0.0, -from_wall - thickness(*at.layers[body])) : std::abs(from_wall);
 }
 
+bool has_layer(const Snapshot& at, std::size_t body) { return body < at.layers.size() && at.layers[body]; }
+
+double distance_to_walls(const Snapshot& at, const Vec3& x) {
+    double nearest = at.walls ? std::sqrt(at.walls->nearest(x).squared_distance) : std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis)
+        nearest = std::min({nearest, x[axis] - at.box.min[axis], at.box.max[axis] - x[axis]});
+    return std::max(0.0, nearest);
+}
+
+/// What is near a place: bodies, and the one that it is in.
+struct Surrounded {
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+    double nearest = std::numeric_limits<double>::infinity(), next = nearest;  // bodies without layers [m]
+    double depth = 0;                                                          // in the body `within` [m]
+    std::size_t within = none;
+
+    void see(const Snapshot& at, std::size_t body, double signed_distance) {
+        if (signed_distance < 0) {
+            depth = -signed_distance;
+            within = body;
+        }
+        if (has_layer(at, body)) return;
+        const double d = std::abs(signed_distance);
+        next = std::min(next, std::max(nearest, d));
+        nearest = std::min(nearest, d);
+    }
+};
+
+double gap_width(const Snapshot& at, const Vec3& x, const Surrounded& by) {
+    if (by.within == Surrounded::none) return by.nearest + std::min(by.next, distance_to_walls(at, x));
+    if (has_layer(at, by.within)) return std::numeric_limits<double>::infinity();
+    const Vec3 on_surface = closest_point(at.shapes[by.within], x);
+    double nearest = distance_to_walls(at, on_surface);
+    for (std::size_t body = 0; body < at.shapes.size(); ++body)
+        if (body != by.within && !has_layer(at, body))
+            nearest = std::min(nearest, std::max(0.0, signed_distance(at.shapes[body], on_surface)));
+    return nearest;
+}
+
 }  // namespace
 
-double target_size(const Snapshot& at, const Vec3& x) {
-    double least = largest_size(at.box, at.size);
+bool has_narrow_gap(const Snapshot& at) {
+    if (least_size(at.size) >= at.size.surface) return false;
+    const double narrow = narrow_gap * at.size.surface;
+    std::vector<std::size_t> bodies;
+    std::vector<Bounds> held;
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
-        const double rise = at.size.growth * rising_distance(at, body, signed_distance(at.shapes[body], x));
-        least = std::min(least, surface_size(at, body) + rise);
+        if (has_layer(at, body)) continue;
+        bodies.push_back(body);
+        const Bounds& here = held.emplace_back(bounds(at.shapes[body]));
+        for (int wall = 0; wall < box_faces; ++wall)
+            if (wall_gap(at.box, here, wall) < narrow) return true;
+        if (at.walls && gap_between(at.shapes[body], *at.walls) < narrow) return true;
     }
-    return least;
+    return std::ranges::any_of(pairs_within(held, narrow), [&](const auto& pair) {
+        return gap_between(at.shapes[bodies[pair.first]], at.shapes[bodies[pair.second]]) < narrow;
+    });
+}
+
+double gap_width(const Snapshot& at, const Vec3& x) {
+    Surrounded by;
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) by.see(at, body, signed_distance(at.shapes[body], x));
+    return gap_width(at, x, by);
+}
+
+double target_size(const Snapshot& at, const Vec3& x) {
+    double size = largest_size(at.box, at.size);
+    Surrounded by;
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        const double from_wall = signed_distance(at.shapes[body], x);
+        by.see(at, body, from_wall);
+        size = std::min(size, surface_size(at, body) + at.size.growth * rising_distance(at, body, from_wall));
+    }
+    const double least = least_size(at.size);
+    if (!at.narrow || gap_share * by.nearest >= size + at.size.growth * by.depth) return size;
+    return std::min(size, std::max(least, gap_share * gap_width(at, x, by)) + at.size.growth * by.depth);
 }
 
 }  // namespace kropla

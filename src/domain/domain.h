@@ -54,9 +54,9 @@ struct Body {
     std::string name;
     Shape shape;  // at t = 0 with the motion's displacement not yet applied
     Motion motion = [](double) { return Pose{}; };
+    std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
     Deformation deformation = {};  // none: it moves rigidly. Else its surface goes with it, motion is not asked, and of a
                                    //   moving mesh's domain `shape` is what the mesh has at its time
-    std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
 };
 
 /// What size.growth counts for at most: beyond, neighbouring cells differ so much that some cannot keep an R/r
@@ -64,12 +64,20 @@ struct Body {
 inline constexpr double steepest_growth = 0.5;
 
 /// The target edge length at distance R from the nearest body, or from its shell inside of it: min(far,
-/// surface + growth * R), with a growth of at most `steepest_growth`; and nowhere more than `largest_size`.
+/// surface + growth * R), with a growth of at most `steepest_growth`; and nowhere more than `largest_size`. In a gap
+/// between bodies without layers, or between one and a wall, it falls with the width, `gap_share` of it, down to `least`,
+/// once one of them is narrower than `narrow_gap` (Snapshot::narrow).
 struct SizeField {
     double surface = 2e-4;  // [m]
     double growth = 0.1;    // [-] rise per metre of distance, 0 ... 1
     double far = 8e-4;      // [m], at least surface
+    std::optional<double> least = {};  // [m], at most surface; none: a twentieth of it
 };
+[[nodiscard]] inline double least_size(const SizeField& size) { return size.least.value_or(size.surface / 20); }
+/// Target size by width of a gap: one cell across, half as high again as a regular one is wide.
+inline constexpr double gap_share = 1.5;
+/// [surface sizes] wider gaps are left as they are: the engine finds cells for them, at smaller changes.
+inline constexpr double narrow_gap = 0.3;
 
 /// Among walls, which are the faces of the box, 0 ... 5, the number of what Domain::walls holds.
 inline constexpr int fixed_walls = box_faces;
@@ -94,6 +102,7 @@ struct Snapshot {
     SizeField size;
     std::vector<Shape> shapes;
     std::vector<std::optional<LayerOptions>> layers = {};  // per body
+    bool narrow = false;                                   // target sizes fall in gaps
     std::shared_ptr<const TriangleTree> walls = {};
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
@@ -107,7 +116,12 @@ struct Snapshot {
 /// The largest target size in the box [m]: size.far, or less where the box is so thin that cells of that size
 /// would reach from one wall to the opposite one.
 [[nodiscard]] double largest_size(const Box& box, const SizeField& size);
-/// The target edge length at x [m]: the least that SizeField gives for a body at its surface_size.
+/// Is a gap narrower than `narrow_gap`, of those that sizes may fall in?
+[[nodiscard]] bool has_narrow_gap(const Snapshot& at);
+/// The width of the gap at x [m]: from the nearest wall or surface of a body without a layer to the next nearest; within
+/// such a body, that at the point of its surface nearest to x. Infinite where there are no two, or within a layered body.
+[[nodiscard]] double gap_width(const Snapshot& at, const Vec3& x);
+/// The target edge length at x [m]: the least that SizeField gives for a body at its surface_size, and in gaps.
 [[nodiscard]] double target_size(const Snapshot& at, const Vec3& x);
 
 /// How far at most the vertices of a body's surface stand outside of its shape [m], so that the polyhedron

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domain/triangle.h"
+#include "mesh/triangle.h"
 #include "mesh/box_tree.h"
 
 #include <cstddef>

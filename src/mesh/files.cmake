@@ -1,6 +1,7 @@
 list(APPEND KROPLA_MESH_FILES
     mesh/mesh.cpp
     mesh/topology.cpp
+    mesh/triangle.cpp
     mesh/cavity.cpp
     mesh/prisms.cpp
     mesh/quality.cpp

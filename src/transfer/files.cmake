@@ -1,5 +1,6 @@
 list(APPEND KROPLA_MESH_FILES
     transfer/locate.cpp
+    transfer/on_interface.cpp
     transfer/changed.cpp
     transfer/clip.cpp
     transfer/overlap.cpp

@@ -1,4 +1,5 @@
 #include "transfer/geometry.h"
+#include "transfer/on_interface.h"
 
 #include <kropla/mesh/topology.h>
 
@@ -26,10 +27,16 @@ std::vector<GivenVertex> given_vertices(const TransferGeometry& geometry, const 
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     std::vector<Vec3> places;
     for (Vertex v : vertices) places.push_back(after.position[v]);
-    const std::vector<Location> found = locate_in_gone(before, geometry.changed, places);
+    // What is told of an interface is told by the old one, wherever the new one lies beside it: as volumes are kept on both
+    // sides, so are then, but for the second power of the distance, the integrals of what changes steeply there.
+    const std::vector<Location> on_old = nearest_on_interface(before, geometry.changed, places);
+    const std::vector<Location> in_old = locate_in_gone(before, geometry.changed, places);
     std::vector<GivenVertex> given;
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-        given.push_back({vertices[i], before.tets[found[i].tet], found[i].weights});
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const bool stands_on = on_old[i].tet.exists() && constraint(after, vertices[i], ball(after, vertices[i])).on_interface;
+        const Location& found = stands_on ? on_old[i] : in_old[i];
+        given.push_back({vertices[i], before.tets[found.tet], found.weights});
+    }
     return given;
 }
 

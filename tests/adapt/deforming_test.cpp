@@ -3,7 +3,7 @@
 #include "adapt/cases.h"
 #include "adapt/threads.h"
 #include "base/random.h"
-#include "domain/deforming.h"
+#include "domain/body_surface.h"
 #include <kropla/base/error.h>
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
@@ -104,7 +104,7 @@ Seen follow(MovingMesh& moving, Carried& carried, double end, int steps) {
 double difference(const Domain& domain, const Mesh& mesh, const Shape& shape) {
     constexpr int n = 6;  // parts of a side
     double sum = 0;
-    const DeformingSurface surface = deforming_surfaces(domain, mesh).front();
+    const BodySurface surface = deforming_surfaces(domain, mesh).front();
     for (const auto& [a, b, c] : surface.triangles) {
         const Vec3 &p = mesh.position[a], &q = mesh.position[b], &r = mesh.position[c];
         double off = 0;

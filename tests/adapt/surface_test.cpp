@@ -24,7 +24,7 @@ Domain finer_sphere() {
     return domain;
 }
 
-std::vector<Edge> edges_of(const DeformingSurface& surface) {
+std::vector<Edge> edges_of(const BodySurface& surface) {
     std::vector<Edge> edges;
     for (const auto& [a, b, c] : surface.triangles)
         for (const Edge e : {Edge{a, b}, Edge{b, c}, Edge{c, a}})

@@ -1,7 +1,7 @@
 // Distances of triangles. Two triangles that do not pierce each other are nearest at a corner of one, or where an edge
 // of each is nearest to the other [Ericson 2005, "Real-Time Collision Detection", 5.1].
 
-#include "domain/triangle.h"
+#include "mesh/triangle.h"
 
 #include <kropla/base/predicates.h>
 
