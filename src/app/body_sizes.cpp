@@ -32,9 +32,9 @@ std::string one_line(std::string name) {
 std::vector<BodySize> body_sizes(const Domain& domain, const Mesh& mesh) {
     std::vector<BodySize> sizes;
     for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
-        const auto& [name, shape, motion, layer] = domain.bodies[body];
+        const Body& of = domain.bodies[body];
         const auto triangles = region_surface(mesh, region_of_body(body)).interface;
-        sizes.push_back({name, shape.semi_axes, volume(shape), region_volume(mesh, region_of_body(body)),
+        sizes.push_back({of.name, of.shape.semi_axes, volume(of.shape), region_volume(mesh, region_of_body(body)),
                          static_cast<int>(triangles.size()), mean_edge(mesh, triangles)});
     }
     return sizes;

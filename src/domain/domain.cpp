@@ -23,6 +23,7 @@ Snapshot snapshot(const Domain& domain, double t) {
     for (const Body& body : domain.bodies) {
         at.shapes.push_back(shape_at(body, t));
         at.layers.push_back(body.layer);
+        at.sizes.push_back(body.size);
     }
     return at;
 }
@@ -33,14 +34,22 @@ double distance_to_bodies(const Snapshot& at, const Vec3& x) {
     return nearest;
 }
 
+double asked_size(const Snapshot& at, std::size_t body) {
+    return body < at.sizes.size() ? at.sizes[body].value_or(at.size.surface) : at.size.surface;
+}
+
+double asked_size(const Domain& domain, std::size_t body) {
+    return domain.bodies[body].size.value_or(domain.size.surface);
+}
+
 double surface_size(const Snapshot& at, std::size_t body) {
     // On equilateral triangles of edge h a regular tet is 0.272 h / height times as large as a prism: 1.6^3
     // of that is allowed, as the tets found differ by a quarter from regular ones in this, by measurement.
     constexpr double most_per_height = 15;
-    if (body >= at.layers.size() || !at.layers[body]) return at.size.surface;
+    if (body >= at.layers.size() || !at.layers[body]) return asked_size(at, body);
     const LayerOptions& layer = *at.layers[body];
     const double top = layer.first_height * std::pow(layer.growth, layer.count - 1);
-    return std::min(at.size.surface, most_per_height * top);
+    return std::min(asked_size(at, body), most_per_height * top);
 }
 
 double outward_shift(const Shape& shape, double size) {

@@ -51,6 +51,7 @@ struct Body {
     Shape shape;  // at t = 0 with the motion's displacement not yet applied
     Motion motion = [](double) { return Pose{}; };
     std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
+    std::optional<double> size = {};                 // [m] target edge length at its surface; none: size.surface
 };
 
 /// What size.growth counts for at most: beyond, neighbouring cells differ so much that some cannot keep an R/r
@@ -89,12 +90,16 @@ struct Snapshot {
     std::vector<Shape> shapes;
     std::vector<std::optional<LayerOptions>> layers = {};  // per body
     std::shared_ptr<const TriangleTree> walls = {};
+    std::vector<std::optional<double>> sizes = {};  // per body: its own at its surface [m]
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
 
 /// The distance from x to the nearest body's surface [m], from either side; infinite without bodies.
 [[nodiscard]] double distance_to_bodies(const Snapshot& at, const Vec3& x);
-/// The edge length wanted on the surface of a body and on its shells [m]: size.surface; or less where its
+/// The edge length asked for at the surface of a body [m]: its own, else size.surface.
+[[nodiscard]] double asked_size(const Snapshot& at, std::size_t body);
+[[nodiscard]] double asked_size(const Domain& domain, std::size_t body);
+/// The edge length wanted on the surface of a body and on its shells [m]: as asked; or less where its
 /// layer ends in so thin a prism, as asked, that the first tets on triangles of that size would be more than
 /// twice as large, by the cube roots of their volumes.
 [[nodiscard]] double surface_size(const Snapshot& at, std::size_t body);
