@@ -2,9 +2,13 @@
 
 #include <kropla/domain/domain.h>
 
+#include "domain/body_tree.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace kropla {
 
@@ -16,6 +20,29 @@ double thickness(const LayerOptions& layer) {
 
 Shape shape_at(const Body& body, double t) { return placed(body.shape, body.motion(t)); }
 
+namespace {
+
+/// The tree costs a search where one or two distances would do; more bodies than these are worth it.
+constexpr std::size_t few_bodies = 2;
+
+std::shared_ptr<const BodyTree> tree_of(const Snapshot& at) {
+    constexpr double widened = 1e-9;  // [-] of the box's coordinates and the body's
+    if (at.shapes.size() <= few_bodies) return {};
+    std::vector<Extent> boxes;
+    double least_size = std::numeric_limits<double>::infinity(), most_thickness = 0;
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        const Bounds held = bounds(at.shapes[body]);
+        const double most = std::max({norm(held.min), norm(held.max), norm(at.box.min), norm(at.box.max)});
+        const Vec3 margin = widened * most * Vec3{1, 1, 1};
+        boxes.push_back({held.min - margin, held.max + margin});
+        least_size = std::min(least_size, surface_size(at, body));
+        if (at.layers[body]) most_thickness = std::max(most_thickness, thickness(*at.layers[body]));
+    }
+    return std::make_shared<const BodyTree>(BodyTree{BoxTree(std::move(boxes)), least_size, most_thickness});
+}
+
+}  // namespace
+
 Snapshot snapshot(const Domain& domain, double t) {
     Snapshot at{domain.box, domain.size, {}};
     at.walls = domain.walls;
@@ -25,13 +52,13 @@ Snapshot snapshot(const Domain& domain, double t) {
         at.layers.push_back(body.layer);
         at.sizes.push_back(body.size);
     }
+    at.tree = tree_of(at);
     return at;
 }
 
 double distance_to_bodies(const Snapshot& at, const Vec3& x) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Shape& shape : at.shapes) nearest = std::min(nearest, std::abs(signed_distance(shape, x)));
-    return nearest;
+    return least_of_bodies(at, x, std::numeric_limits<double>::infinity(), [](double d) { return d; },
+                           [&](std::size_t body) { return std::abs(signed_distance(at.shapes[body], x)); });
 }
 
 double asked_size(const Snapshot& at, std::size_t body) {
@@ -78,13 +105,15 @@ double rising_distance(const Snapshot& at, std::size_t body, double from_wall) {
 
 }  // namespace
 
-double target_size(const Snapshot& at, const Vec3& x) {
-    double least = largest_size(at.box, at.size);
-    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
-        const double rise = at.size.growth * rising_distance(at, body, signed_distance(at.shapes[body], x));
-        least = std::min(least, surface_size(at, body) + rise);
-    }
-    return least;
+double target_size(const Snapshot& at, const DistancesFrom& distances) {
+    return least_of_bodies(at, distances.place(), largest_size(at.box, at.size),
+                           [&](double d) { return at.tree->least_size + at.size.growth * d; },
+                           [&](std::size_t body) {
+                               const double rise = at.size.growth * rising_distance(at, body, distances(body));
+                               return surface_size(at, body) + rise;
+                           });
 }
+
+double target_size(const Snapshot& at, const Vec3& x) { return target_size(at, DistancesFrom(at, x)); }
 
 }  // namespace kropla

@@ -83,6 +83,8 @@ struct Domain {
 /// The body as it stands at time t.
 [[nodiscard]] Shape shape_at(const Body& body, double t);
 
+struct BodyTree;  // body_tree.h
+
 /// The domain frozen at one time: shapes in place, ready for many questions about distance and size.
 struct Snapshot {
     Box box;
@@ -91,6 +93,7 @@ struct Snapshot {
     std::vector<std::optional<LayerOptions>> layers = {};  // per body
     std::shared_ptr<const TriangleTree> walls = {};
     std::vector<std::optional<double>> sizes = {};  // per body: its own at its surface [m]
+    std::shared_ptr<const BodyTree> tree = {};      // of `shapes`, by which many are asked fast; none: all are asked
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
 

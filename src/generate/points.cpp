@@ -41,8 +41,16 @@ std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector
 std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& boundary_points,
                                 const std::vector<Vec3>& shell_points, Random random,
                                 const Watch* watch) {
-    const auto spacing = [&](const Vec3& x) { return spacing_inside * target_size(at, x); };
-    const auto room_for = [&](const Vec3& x) { return clearance(at, x); };
+    // Both are asked of the same place, one after the other.
+    Vec3 last = at.box.min;
+    SizeAndClearance found = size_and_clearance(at, last);
+    const auto look = [&](const Vec3& x) {
+        if (x != last) found = size_and_clearance(at, x);
+        last = x;
+        return found;
+    };
+    const auto spacing = [&](const Vec3& x) { return spacing_inside * look(x).size; };
+    const auto room_for = [&](const Vec3& x) { return look(x).clearance; };
     PointGrid taken;
     for (const Vec3& x : boundary_points) taken.insert(x, spacing(x));
     for (const Vec3& x : shell_points) taken.insert(x, spacing(x));
