@@ -37,12 +37,12 @@ Box read_box(const CaseTable& table) {
 }
 
 /// Throws if at the box's coordinates doubles are too coarse for the size.
-void check_resolved(const CaseTable& table, double surface, const Box& box) {
+void check_resolved(const CaseTable& table, double surface, const Box& box, const char* key = "surface") {
     double farthest = 0;
     for (int axis = 0; axis < 3; ++axis)
         farthest = std::max({farthest, std::abs(box.min[axis]), std::abs(box.max[axis])});
     if (surface >= least_resolved * farthest) return;
-    table.refuse_value("surface", fmt::format("must be at least {:.1e} m where coordinates go up to {:.3g} m, for the "
+    table.refuse_value(key, fmt::format("must be at least {:.1e} m where coordinates go up to {:.3g} m, for the "
                                               "sake of rounding (a box nearer to the origin allows less)",
                                               least_resolved * farthest, farthest));
 }
@@ -59,6 +59,17 @@ SizeField read_size(const CaseTable& table, const Box& box) {
         table.refuse_value("far", fmt::format("must be at least surface = {}", size.surface));
     }
     return size;
+}
+
+/// Bodies' own sizes obey the rules of size.surface.
+void check_body_sizes(const CaseTable& file, const Domain& domain) {
+    const std::vector<CaseTable> tables = file.tables("body");
+    for (std::size_t body = 0; body < tables.size(); ++body) {
+        const std::optional<double>& size = domain.bodies[body].size;
+        if (!size) continue;
+        if (*size > domain.size.far) tables[body].refuse_value("size", fmt::format("must be at most size.far = {}", domain.size.far));
+        check_resolved(tables[body], *size, domain.box, "size");
+    }
 }
 
 /// The weights of the paper's Laplacian; only their ratio counts.
@@ -131,6 +142,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     it.domain.box = read_box(file.table("domain"));
     read_bodies(file, it);
     it.domain.size = read_size(file.table("size"), it.domain.box);
+    check_body_sizes(file, it.domain);
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);

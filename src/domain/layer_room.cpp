@@ -41,7 +41,7 @@ const LayerOptions* layer_at_side(const Snapshot& at, std::size_t body, bool ins
 
 Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x) {
     // Of the gap, there is as much less room as the polyhedra stand out into it.
-    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], at.size.surface); };
+    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], asked_size(at, i)); };
     const double own = out(body);
     Gap least{infinity, infinity, -1, body};
     for (int axis = 0; axis < 3; ++axis)

@@ -75,13 +75,14 @@ Draft relaxed_draft(const Snapshot& at, std::uint64_t seed, const Watch* watch) 
     draft.others.resize(draft.walls.size() + 1);
     for (std::size_t i = fixed; i < set.points.size(); ++i)
         draft.others[room_of(at, set.points[i])].push_back(set.points[i]);
+    const Snapshot bounded = bounded_by(draft.walls, at);
     for (std::size_t r = 0; r < draft.others.size(); ++r) {
         if (!in_use(at, r)) continue;
         Room room = empty_room(draft.walls, r, at);
         std::vector<Vec3> points = all_points(room);
         const auto free_from = static_cast<std::ptrdiff_t>(points.size());
         points.insert(points.end(), draft.others[r].begin(), draft.others[r].end());
-        relax_points(points, static_cast<std::size_t>(free_from), at, rounds, watch);
+        relax_points(points, static_cast<std::size_t>(free_from), bounded, rounds, watch);
         draft.others[r].assign(points.begin() + free_from, points.end());
     }
     return draft;

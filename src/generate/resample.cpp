@@ -9,6 +9,7 @@
 
 #include "generate/resample.h"
 
+#include <kropla/domain/words.h>
 #include "generate/creases.h"
 #include "generate/triangle.h"
 
@@ -164,6 +165,24 @@ Surface resampled(const Shape& shape, double size, const Watch* watch) {
     Surface surface = surface_of(sheet);
     put_in_place(surface, shape);
     return surface;
+}
+
+Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
+    Snapshot bounded = at;
+    for (std::size_t body = 0; body < walls.size(); ++body) {
+        Shape& shape = bounded.shapes[body];
+        if (!shape.surface) continue;
+        std::vector<Vec3> points = walls[body].points;
+        for (Vec3& x : points) x -= shape.centre;
+        try {
+            shape = shape_within(make_surface(std::move(points), walls[body].triangles), shape.centre);
+        } catch (const SurfaceError& error) {
+            throw DomainError("body " + std::to_string(body + 1) + ": at its target size of " +
+                              metres(surface_size(at, body)) + " " + error.what() +
+                              " (from its centre); a part of it is thinner than that: a smaller size would do");
+        }
+    }
+    return bounded;
 }
 
 std::vector<Added> refine(Surface& surface, const std::vector<std::size_t>& triangles, const Shape& shape) {

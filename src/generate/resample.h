@@ -11,6 +11,11 @@ namespace kropla {
 /// 3 h^2 / (8 r^2) less than the body. Where corners are nearer to each other than `size`, edges are as short as that.
 [[nodiscard]] Surface resampled(const Shape& shape, double size, const Watch* watch = nullptr);
 
+/// The snapshot with, for each shape that triangles bound, what its surface among `walls` bounds: no finer than the mesh,
+/// so that distances cost no more than that. Throws DomainError if such a surface cuts itself, as where a part is
+/// thinner than its triangles; says that a smaller size would do.
+[[nodiscard]] Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at);
+
 /// A point that was put into an edge.
 struct Added {
     Vec3 place;
