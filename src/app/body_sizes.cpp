@@ -30,12 +30,14 @@ std::string one_line(std::string name) {
 }  // namespace
 
 std::vector<BodySize> body_sizes(const Domain& domain, const Mesh& mesh) {
+    const std::size_t regions = domain.bodies.size() + 1;
+    const std::vector<RegionSurface> surfaces = region_surfaces(mesh, regions);
+    const std::vector<double> volumes = region_volumes(mesh, regions);
     std::vector<BodySize> sizes;
     for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
-        const std::string& name = domain.bodies[body].name;
-        const Shape& shape = domain.bodies[body].shape;
-        const auto triangles = region_surface(mesh, region_of_body(body)).interface;
-        sizes.push_back({name, shape.semi_axes, volume(shape), region_volume(mesh, region_of_body(body)),
+        const Body& of = domain.bodies[body];
+        const auto& triangles = surfaces[body + 1].interface;
+        sizes.push_back({of.name, of.shape.semi_axes, volume(of.shape), volumes[body + 1],
                          static_cast<int>(triangles.size()), mean_edge(mesh, triangles)});
     }
     return sizes;

@@ -65,6 +65,17 @@ SizeField read_size(const CaseTable& table, const Box& box) {
     return size;
 }
 
+/// Bodies' own sizes obey the rules of size.surface.
+void check_body_sizes(const CaseTable& file, const Domain& domain) {
+    const std::vector<CaseTable> tables = file.tables("body");
+    for (std::size_t body = 0; body < tables.size(); ++body) {
+        const std::optional<double>& size = domain.bodies[body].size;
+        if (!size) continue;
+        if (*size > domain.size.far) tables[body].refuse_value("size", fmt::format("must be at most size.far = {}", domain.size.far));
+        check_resolved(tables[body], "size", *size, domain.box);
+    }
+}
+
 /// The weights of the paper's Laplacian; only their ratio counts.
 LaplaceWeights read_weights(const CaseTable& table) {
     const std::vector<double> x = table.numbers("weights", 2, "[X1, X2]");
@@ -146,6 +157,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     it.domain.box = read_box(file.table("domain"));
     read_bodies(file, it);
     it.domain.size = read_size(file.table("size"), it.domain.box);
+    check_body_sizes(file, it.domain);
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kropla/adapt/adapt.h>
+#include <kropla/base/error.h>
 #include <kropla/domain/domain.h>
 #include <kropla/simulate/flow.h>
 #include <kropla/simulate/heat.h>
@@ -53,8 +54,9 @@ using WrittenKeys = std::vector<std::pair<std::string, std::string>>;
 
 /// How the user put what the structs of a case hold in another form, each as a TOML value. Empty: not given.
 struct WrittenBody {
-    std::string shape;  // "sphere" or "ellipsoid", without quotes
+    std::string shape;  // "sphere", "ellipsoid" or "surface", without quotes
     std::string rotation;
+    WrittenKeys surface;                // of a surface: where it comes from
     std::array<std::string, 3> motion;  // all empty: at rest, or not by a path
     WrittenKeys free;                   // its motion, if it goes where forces take it
     std::string velocity;               // of its surface, if it deforms; else empty
@@ -101,6 +103,17 @@ struct Case {
     WrittenFlow written_flow;
     std::vector<Parameter> parameters;
     std::map<std::string, std::string> written_numbers;  // by full key, as TOML: those that are expressions of parameters
+};
+
+/// What a case file names as a body's surface bounds nothing. Beside the words, the triangles of the file [m], and the
+/// numbers of those at fault; none where it is not theirs.
+struct SurfaceFileError : CaseError {
+    SurfaceFileError(const std::string& what, std::vector<Vec3> all, std::vector<std::array<int, 3>> of,
+                     std::vector<std::size_t> at_fault)
+        : CaseError(what), points(std::move(all)), triangles(std::move(of)), faulty(std::move(at_fault)) {}
+    std::vector<Vec3> points;
+    std::vector<std::array<int, 3>> triangles;
+    std::vector<std::size_t> faulty;
 };
 
 /// The most tets that a case may ask for: beyond, a run would take days and the memory of a large machine.

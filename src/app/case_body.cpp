@@ -2,11 +2,15 @@
 #include "app/case_body.h"
 
 #include "app/deformation.h"
+#include <kropla/base/error.h>
+#include "domain/triangulated_surface.h"
+#include "io/triangles.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <tuple>
@@ -33,24 +37,59 @@ Shape read_sphere(const CaseTable& table) {
     return {table.place("centre"), {radius, radius, radius}, {}};
 }
 
+Rotation read_rotation(const CaseTable& table, WrittenBody& written) {
+    if (!table.has("rotation")) return {};
+    const std::vector<double> r = table.numbers("rotation", 4, "[axis x, y, z, degrees]");
+    const Vec3 axis{r[0], r[1], r[2]};
+    if (!(norm(axis) > 0)) table.refuse_value("rotation", "must have an axis that is not zero");
+    written.rotation = fmt::format("[{}]", fmt::join(r, ", "));
+    return rotation_about(axis, r[3] * std::numbers::pi / 180);
+}
+
 Shape read_ellipsoid(const CaseTable& table, WrittenBody& written) {
     if (table.has("radius")) table.refuse("radius", "an ellipsoid has axes = [a, b, c] instead");
     Shape shape{table.place("centre"), table.lengths("axes"), {}};
-    if (table.has("rotation")) {
-        const std::vector<double> r = table.numbers("rotation", 4, "[axis x, y, z, degrees]");
-        const Vec3 axis{r[0], r[1], r[2]};
-        if (!(norm(axis) > 0)) table.refuse_value("rotation", "must have an axis that is not zero");
-        shape.orientation = rotation_about(axis, r[3] * std::numbers::pi / 180);
-        written.rotation = fmt::format("[{}]", fmt::join(r, ", "));
-    }
+    shape.orientation = read_rotation(table, written);
     return shape;
+}
+
+/// Where a file of the case is: beside the case file, if its path does not begin at the root.
+std::filesystem::path beside_case(const CaseTable& table, const std::string& file) {
+    return std::filesystem::absolute(std::filesystem::path(table.file()).parent_path() / file).lexically_normal();
+}
+
+Shape read_surface(const CaseTable& table, WrittenBody& written) {
+    for (const char* key : {"radius", "axes"})
+        if (table.has(key)) table.refuse(key, "a surface has file = \"...\", and scale, instead");
+    const std::string file = table.text("file");
+    const std::filesystem::path path = beside_case(table, file);
+    const double scale = table.has("scale") ? table.length("scale") : 1.0;
+    const Vec3 centre = table.place("centre");
+    const Rotation rotation = read_rotation(table, written);
+    written.surface = {{"file", toml_text(path.string())}, {"scale", toml_number(scale)}};
+    FileTriangles found;
+    try {
+        found = read_triangles(path);
+    } catch (const FileError& error) {
+        table.refuse("file", error.what());
+    }
+    for (Vec3& x : found.points) x *= scale;
+    try {
+        return shape_within(make_surface(found.points, found.triangles), centre, rotation);
+    } catch (const SurfaceError& error) {
+        throw SurfaceFileError(table.refusal("file", fmt::format("{}: {}", path.string(), error.what())), found.points,
+                               found.triangles, error.triangles);
+    }
 }
 
 Shape read_shape(const CaseTable& table, WrittenBody& written) {
     written.shape = table.text("shape");
+    if (written.shape == "surface") return read_surface(table, written);
+    for (const char* key : {"file", "scale"})
+        if (table.has(key)) table.refuse(key, "is of shape = \"surface\"");
     if (written.shape == "sphere") return read_sphere(table);
     if (written.shape == "ellipsoid") return read_ellipsoid(table, written);
-    table.refuse_value("shape", "must be \"sphere\" or \"ellipsoid\"");
+    table.refuse_value("shape", "must be \"sphere\", \"ellipsoid\" or \"surface\"");
 }
 
 constexpr std::array<std::string_view, 3> coordinates = {"x", "y", "z"};
@@ -194,9 +233,10 @@ LayerOptions read_layer(const CaseTable& table) {
 
 void read_bodies(const CaseTable& file, Case& it) {
     for (const CaseTable& table : file.tables("body")) {
-        table.allow({"name", "shape", "centre", "radius", "axes", "rotation", "motion", "layer"});
+        table.allow({"name", "shape", "centre", "radius", "axes", "file", "scale", "rotation", "size", "motion", "layer"});
         WrittenBody written;
         Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
+        if (table.has("size")) body.size = table.length("size");
         it.free.emplace_back();
         if (table.has("motion")) {
             const CaseTable motion = table.table("motion");

@@ -27,7 +27,8 @@ double least_of_layers(const Case& it) {
 /// How far the polyhedra of two bodies that may meet stand out, at most [m].
 double most_stand_out(const Domain& domain) {
     double most = 0;
-    for (const Body& body : domain.bodies) most = std::max(most, outward_shift(body.shape, domain.size.surface));
+    for (std::size_t body = 0; body < domain.bodies.size(); ++body)
+        most = std::max(most, outward_shift(domain.bodies[body].shape, asked_size(domain, body)));
     return (domain.bodies.size() > 1 ? 2 : 1) * most;
 }
 

@@ -267,14 +267,18 @@ std::vector<CaseTable> CaseTable::tables(std::string_view key) const {
     return found;
 }
 
-void CaseTable::refuse(std::string_view key, std::string_view what) const {
+std::string CaseTable::refusal(std::string_view key, std::string_view what) const {
     if (const toml::node* value = table_->get(key))
-        throw CaseError(fmt::format("{}: {}", origin(*reading_, value->source(), full_name(key)), what));
-    if (name_.empty()) throw CaseError(fmt::format("{}: {}: {}", reading_->file, key, what));
+        return fmt::format("{}: {}", origin(*reading_, value->source(), full_name(key)), what);
+    if (name_.empty()) return fmt::format("{}: {}: {}", reading_->file, key, what);
     const toml::source_region& at = table_->source();
     const std::string name = comes_from_file(*reading_, at) ? "" : ": " + full_name(key);
-    throw CaseError(fmt::format("{}{}: {}", origin(*reading_, at, full_name(key)), name, what));
+    return fmt::format("{}{}: {}", origin(*reading_, at, full_name(key)), name, what);
 }
+
+void CaseTable::refuse(std::string_view key, std::string_view what) const { throw CaseError(refusal(key, what)); }
+
+const std::string& CaseTable::file() const { return reading_->file; }
 
 void CaseTable::refuse_value(std::string_view key, std::string_view must) const {
     const toml::node& value = node(key, must);

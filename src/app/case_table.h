@@ -90,6 +90,11 @@ public:
     [[nodiscard]] bool holds_text(std::string_view key) const;
     [[nodiscard]] bool holds_table(std::string_view key) const;
 
+    /// The name of the file that the table is of.
+    [[nodiscard]] const std::string& file() const;
+
+    /// The line that `refuse` throws.
+    [[nodiscard]] std::string refusal(std::string_view key, std::string_view what) const;
     /// Throws: what is wrong with the value of `key`, or with its being there or not.
     [[noreturn]] void refuse(std::string_view key, std::string_view what) const;
     /// Throws: what the value of `key` must be, and what was found: "must be positive, got -1" or "is

@@ -42,9 +42,11 @@ std::string body(const Case& it, std::size_t number) {
     if (written.shape == "sphere") {
         text += line(it, table, "radius", body.shape.semi_axes.x);
     } else {
-        text += line(it, table, "axes", vec3(body.shape.semi_axes));
+        if (written.shape == "ellipsoid") text += line(it, table, "axes", vec3(body.shape.semi_axes));
+        text += keys(it, table, written.surface);
         if (!written.rotation.empty()) text += line(it, table, "rotation", written.rotation);
     }
+    if (body.size) text += line(it, table, "size", *body.size);
     const auto& [x, y, z] = written.motion;
     if (!x.empty()) text += fmt::format("[body.motion]\nx = {}\ny = {}\nz = {}\n", x, y, z);
     if (!written.free.empty()) text += "[body.motion]\nkind = \"free\"\n" + keys(it, table + ".motion", written.free);

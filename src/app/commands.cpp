@@ -163,6 +163,9 @@ void describe_run(CLI::App& app, RunOptions& options) {
     run->add_flag("--force", options.force, "overwrite the run that the folder holds");
     run->add_flag("--test-rollback", options.test_rollback,
                   "refuse every step once after it was computed and redo it; the results are the same");
+    run->add_option("--debug-mesh", options.debug_mesh,
+                    "if the surface of a body is at fault, write the triangles that are to a VTU file")
+        ->type_name("FILE");
     describe_threads(*run, options.threads);
     run->footer(
         "PETSc's options reach it untouched; put them last:\n"

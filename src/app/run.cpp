@@ -17,6 +17,7 @@
 #include "app/species_fields.h"
 #include "app/step.h"
 #include <kropla/base/error.h>
+#include "io/triangles.h"
 #include "report/page.h"
 #include "simulate/stop.h"
 #include <kropla/step/initial_mesh.h>
@@ -325,9 +326,26 @@ void write_run_report(const std::filesystem::path& folder, const PageOptions& op
     }
 }
 
+/// The case, or why not; of a body's surface that is at fault, its triangles for who wants to look at them.
+Case read_or_show(const RunOptions& options, bool writes) {
+    try {
+        return read_case(options.case_file, options.settings);
+    } catch (const SurfaceFileError& error) {
+        if (options.debug_mesh.empty()) throw;
+        std::vector<std::array<int, 3>> faulty;
+        std::vector<int> numbers;
+        for (std::size_t t : error.faulty) {
+            faulty.push_back(error.triangles[t]);
+            numbers.push_back(static_cast<int>(t));
+        }
+        if (writes) write_triangles(options.debug_mesh, error.points, faulty, numbers);
+        throw CaseError(fmt::format("{}; its {} triangles are in {}", error.what(), faulty.size(), options.debug_mesh.string()));
+    }
+}
+
 int run_with(const RunOptions& options, const Ranks& ranks) {
     const auto start_time = std::chrono::steady_clock::now();
-    Case it = read_case(options.case_file, options.settings);
+    Case it = read_or_show(options, ranks.rank == 0);
     const auto lock = hold_folder(options, ranks);
     Progress progress;
     if (!options.resume) progress.say(opening_line(options, it));

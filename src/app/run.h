@@ -13,6 +13,7 @@ struct RunOptions {
     bool resume = false;                      // go on from the folder's checkpoint
     bool force = false;                       // overwrite the run that the folder holds
     bool test_rollback = false;               // refuse every step once and redo it
+    std::filesystem::path debug_mesh;         // where faulty triangles of a body's surface are written; empty: nowhere
     int threads = 0;                          // 0: as many as there are processors
     std::vector<std::string> solver_options;  // PETSc's, as given: "-ksp_type", "cg"
 };

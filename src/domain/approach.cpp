@@ -75,14 +75,16 @@ double gap_at(const Domain& domain, const Approach& pair, double time) {
 }
 
 double stand_out(const Domain& domain, const Approach& approach) {
-    const auto of = [&](std::size_t body) { return outward_shift(domain.bodies[body].shape, domain.size.surface); };
+    const auto of = [&](std::size_t body) { return outward_shift(domain.bodies[body].shape, asked_size(domain, body)); };
     return of(approach.body) + (approach.wall < 0 ? of(approach.other) : 0);
 }
 
 double size_for_gap(const Domain& domain, const Approach& approach, double in_sizes) {
-    const double size = domain.size.surface, per_square = stand_out(domain, approach) / (size * size);
+    double size = asked_size(domain, approach.body);
+    if (approach.wall < 0) size = std::max(size, asked_size(domain, approach.other));
+    const double per_square = stand_out(domain, approach) / (size * size), in_surface_sizes = domain.size.surface / size;
     // in_sizes * s + per_square * s^2 = gap
-    return 2 * approach.gap / (in_sizes + std::sqrt(in_sizes * in_sizes + 4 * per_square * approach.gap));
+    return in_surface_sizes * (2 * approach.gap / (in_sizes + std::sqrt(in_sizes * in_sizes + 4 * per_square * approach.gap)));
 }
 
 std::optional<Approach> approach_at(const Snapshot& at, const Vec3& place, double time) {

@@ -33,7 +33,7 @@ struct Instant {
 /// How far the polyhedra of the bodies beside the gap stand out of their shapes, together (`outward_shift`)
 /// [m].
 [[nodiscard]] double stand_out(const Domain& domain, const Approach& approach);
-/// The largest size.surface of which `in_sizes` fit into the gap beside the polyhedra [m]; `stand_out` grows
+/// The largest size.surface (sizes of bodies' own in proportion) of which `in_sizes` fit into the gap beside the polyhedra [m]; `stand_out` grows
 /// with its square.
 [[nodiscard]] double size_for_gap(const Domain& domain, const Approach& approach, double in_sizes);
 /// The pairs (a before b) whose bounds come within `near` [m] of each other, found by a sweep along x

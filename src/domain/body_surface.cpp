@@ -1,5 +1,6 @@
 #include "domain/body_surface.h"
 
+#include "domain/body_tree.h"
 #include "domain/triangulated_surface.h"
 #include <kropla/mesh/topology.h>
 
@@ -58,6 +59,7 @@ Snapshot snapshot(const Domain& domain, double t, std::span<const BodySurface> d
                   const Array<Vertex, Vec3>& places, bool uneven) {
     Snapshot at = snapshot(domain, t);
     for (const BodySurface& surface : deforming) at.shapes[surface.body] = shape_of(surface, places);
+    if (!deforming.empty()) plant_tree(at);
     at.narrow = uneven || has_narrow_gap(at);
     return at;
 }

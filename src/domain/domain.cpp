@@ -3,11 +3,14 @@
 #include <kropla/domain/domain.h>
 
 #include "domain/approach.h"
+#include "domain/body_tree.h"
 #include "domain/triangle_tree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace kropla {
 
@@ -21,6 +24,31 @@ Shape shape_at(const Body& body, double t) {
     return body.deformation ? body.shape : placed(body.shape, body.motion(t));
 }
 
+namespace {
+
+/// The tree costs a search where one or two distances would do; more bodies than these are worth it.
+constexpr std::size_t few_bodies = 2;
+
+std::shared_ptr<const BodyTree> tree_of(const Snapshot& at) {
+    constexpr double widened = 1e-9;  // [-] of the box's coordinates and the body's
+    if (at.shapes.size() <= few_bodies) return {};
+    std::vector<Extent> boxes;
+    double least_size = std::numeric_limits<double>::infinity(), most_thickness = 0;
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        const Bounds held = bounds(at.shapes[body]);
+        const double most = std::max({norm(held.min), norm(held.max), norm(at.box.min), norm(at.box.max)});
+        const Vec3 margin = widened * most * Vec3{1, 1, 1};
+        boxes.push_back({held.min - margin, held.max + margin});
+        least_size = std::min(least_size, surface_size(at, body));
+        if (at.layers[body]) most_thickness = std::max(most_thickness, thickness(*at.layers[body]));
+    }
+    return std::make_shared<const BodyTree>(BodyTree{BoxTree(std::move(boxes)), least_size, most_thickness});
+}
+
+}  // namespace
+
+void plant_tree(Snapshot& at) { at.tree = tree_of(at); }
+
 Snapshot snapshot(const Domain& domain, double t) {
     Snapshot at{domain.box, domain.size, {}};
     at.walls = domain.walls;
@@ -28,24 +56,33 @@ Snapshot snapshot(const Domain& domain, double t) {
     for (const Body& body : domain.bodies) {
         at.shapes.push_back(shape_at(body, t));
         at.layers.push_back(body.layer);
+        at.sizes.push_back(body.size);
     }
+    plant_tree(at);
     return at;
 }
 
 double distance_to_bodies(const Snapshot& at, const Vec3& x) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Shape& shape : at.shapes) nearest = std::min(nearest, std::abs(signed_distance(shape, x)));
-    return nearest;
+    return least_of_bodies(at, x, std::numeric_limits<double>::infinity(), [](double d) { return d; },
+                           [&](std::size_t body) { return std::abs(signed_distance(at.shapes[body], x)); });
+}
+
+double asked_size(const Snapshot& at, std::size_t body) {
+    return body < at.sizes.size() ? at.sizes[body].value_or(at.size.surface) : at.size.surface;
+}
+
+double asked_size(const Domain& domain, std::size_t body) {
+    return domain.bodies[body].size.value_or(domain.size.surface);
 }
 
 double surface_size(const Snapshot& at, std::size_t body) {
     // On equilateral triangles of edge h a regular tet is 0.272 h / height times as large as a prism: 1.6^3
     // of that is allowed, as the tets found differ by a quarter from regular ones in this, by measurement.
     constexpr double most_per_height = 15;
-    if (body >= at.layers.size() || !at.layers[body]) return at.size.surface;
+    if (body >= at.layers.size() || !at.layers[body]) return asked_size(at, body);
     const LayerOptions& layer = *at.layers[body];
     const double top = layer.first_height * std::pow(layer.growth, layer.count - 1);
-    return std::min(at.size.surface, most_per_height * top);
+    return std::min(asked_size(at, body), most_per_height * top);
 }
 
 double outward_shift(const Shape& shape, double size) {
@@ -137,17 +174,28 @@ double gap_width(const Snapshot& at, const Vec3& x) {
     return gap_width(at, x, by);
 }
 
-double target_size(const Snapshot& at, const Vec3& x) {
-    double size = largest_size(at.box, at.size);
+namespace {
+
+/// Where gaps are narrow, of what the bodies' sizes are.
+double size_in_gap(const Snapshot& at, const Vec3& x, double size) {
     Surrounded by;
-    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
-        const double from_wall = signed_distance(at.shapes[body], x);
-        by.see(at, body, from_wall);
-        size = std::min(size, surface_size(at, body) + at.size.growth * rising_distance(at, body, from_wall));
-    }
-    const double least = least_size(at.size);
-    if (!at.narrow || gap_share * by.nearest >= size + at.size.growth * by.depth) return size;
-    return std::min(size, std::max(least, gap_share * gap_width(at, x, by)) + at.size.growth * by.depth);
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) by.see(at, body, signed_distance(at.shapes[body], x));
+    if (gap_share * by.nearest >= size + at.size.growth * by.depth) return size;
+    return std::min(size, std::max(least_size(at.size), gap_share * gap_width(at, x, by)) + at.size.growth * by.depth);
 }
+
+}  // namespace
+
+double target_size(const Snapshot& at, const DistancesFrom& distances) {
+    const double size = least_of_bodies(at, distances.place(), largest_size(at.box, at.size),
+                           [&](double d) { return at.tree->least_size + at.size.growth * d; },
+                           [&](std::size_t body) {
+                               const double rise = at.size.growth * rising_distance(at, body, distances(body));
+                               return surface_size(at, body) + rise;
+                           });
+    return at.narrow ? size_in_gap(at, distances.place(), size) : size;
+}
+
+double target_size(const Snapshot& at, const Vec3& x) { return target_size(at, DistancesFrom(at, x)); }
 
 }  // namespace kropla

@@ -55,6 +55,7 @@ struct Body {
     Shape shape;  // at t = 0 with the motion's displacement not yet applied
     Motion motion = [](double) { return Pose{}; };
     std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
+    std::optional<double> size = {};                 // [m] target edge length at its surface; none: size.surface
     Deformation deformation = {};  // none: it moves rigidly. Else its surface goes with it, motion is not asked, and of a
                                    //   moving mesh's domain `shape` is what the mesh has at its time
 };
@@ -96,6 +97,8 @@ struct Domain {
 /// The body as it stands at time t.
 [[nodiscard]] Shape shape_at(const Body& body, double t);
 
+struct BodyTree;  // body_tree.h
+
 /// The domain frozen at one time: shapes in place, ready for many questions about distance and size.
 struct Snapshot {
     Box box;
@@ -104,12 +107,17 @@ struct Snapshot {
     std::vector<std::optional<LayerOptions>> layers = {};  // per body
     bool narrow = false;                                   // target sizes fall in gaps
     std::shared_ptr<const TriangleTree> walls = {};
+    std::vector<std::optional<double>> sizes = {};  // per body: its own at its surface [m]
+    std::shared_ptr<const BodyTree> tree = {};      // of `shapes`, by which many are asked fast; none: all are asked
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
 
 /// The distance from x to the nearest body's surface [m], from either side; infinite without bodies.
 [[nodiscard]] double distance_to_bodies(const Snapshot& at, const Vec3& x);
-/// The edge length wanted on the surface of a body and on its shells [m]: size.surface; or less where its
+/// The edge length asked for at the surface of a body [m]: its own, else size.surface.
+[[nodiscard]] double asked_size(const Snapshot& at, std::size_t body);
+[[nodiscard]] double asked_size(const Domain& domain, std::size_t body);
+/// The edge length wanted on the surface of a body and on its shells [m]: as asked; or less where its
 /// layer ends in so thin a prism, as asked, that the first tets on triangles of that size would be more than
 /// twice as large, by the cube roots of their volumes.
 [[nodiscard]] double surface_size(const Snapshot& at, std::size_t body);

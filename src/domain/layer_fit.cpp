@@ -38,7 +38,7 @@ struct Nearby {
 
 std::vector<Nearby> nearby(const Domain& domain, const Snapshot& at, std::size_t body) {
     const double own = thickness(*at.layers[body]);
-    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], at.size.surface); };
+    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], asked_size(at, i)); };
     const Bounds held = bounds(at.shapes[body]);
     std::vector<Nearby> found;
     for (int wall = 0; wall < 6; ++wall) {

@@ -7,6 +7,7 @@
 
 #include "domain/layer_room.h"
 
+#include "domain/body_tree.h"
 #include "domain/triangle_tree.h"
 
 #include <algorithm>
@@ -40,7 +41,7 @@ const LayerOptions* layer_at_side(const Snapshot& at, std::size_t body, bool ins
 
 Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x) {
     // Of the gap, there is as much less room as the polyhedra stand out into it.
-    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], at.size.surface); };
+    const auto out = [&](std::size_t i) { return outward_shift(at.shapes[i], asked_size(at, i)); };
     const double own = out(body);
     Gap least{infinity, infinity, -1, body};
     for (int axis = 0; axis < 3; ++axis)
@@ -71,17 +72,17 @@ double layer_thickness(const Snapshot& at, std::size_t body, bool inside, const 
     return std::clamp(room, 0.0, thickness(*layer));
 }
 
-double distance_to_shells(const Snapshot& at, const Vec3& x) {
-    double nearest = infinity;
-    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
-        const double from_wall = signed_distance(at.shapes[body], x);
-        const bool inside = from_wall < 0;
-        double from_shell = std::abs(from_wall);
-        if (layer_at_side(at, body, inside) && from_shell - thickness(*at.layers[body]) < nearest)
-            from_shell -= layer_thickness(at, body, inside, closest_point(at.shapes[body], x));
-        nearest = std::min(nearest, from_shell);
-    }
-    return nearest;
+double distance_to_shells(const Snapshot& at, const DistancesFrom& distances) {
+    return least_of_bodies(at, distances.place(), infinity, [&](double d) { return d - at.tree->most_thickness; },
+                           [&](std::size_t body) {
+                               const double from_wall = distances(body);
+                               const bool inside = from_wall < 0;
+                               if (!layer_at_side(at, body, inside)) return std::abs(from_wall);
+                               const Vec3 on_wall = closest_point(at.shapes[body], distances.place());
+                               return std::abs(from_wall) - layer_thickness(at, body, inside, on_wall);
+                           });
 }
+
+double distance_to_shells(const Snapshot& at, const Vec3& x) { return distance_to_shells(at, DistancesFrom(at, x)); }
 
 }  // namespace kropla

@@ -78,7 +78,7 @@ SizeLimit surface_limit(const Domain& domain, double t, double least_gap) {
         if (at.walls)
             lower_by_gap(limit, domain, {i, fixed_walls, 0, gap_between(shape, *at.walls), t}, least_gap);
         const double radius = least_curvature_radius(shape);
-        lower(limit, radius,
+        lower(limit, radius * (domain.size.surface / asked_size(domain, i)),
               named(domain.bodies[i]) + " is curved with a radius of " + metres(radius) + ", too little");
     }
     for (const auto& [a, b] : pairs_within(held, least_gap * domain.size.surface + out))

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -38,7 +39,26 @@ struct Draft {
 
 Vec3 twice_area(const Corners& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
-[[noreturn]] void refuse(const std::string& what) { throw DomainError("the surface " + what); }
+[[noreturn]] void refuse(const std::string& what, std::vector<std::size_t> triangles = {}) {
+    throw SurfaceError("the surface " + what, std::move(triangles));
+}
+
+/// Faults of one kind, of which the first is told and all are counted.
+struct Faults {
+    std::string first;
+    std::size_t count = 0;
+    std::vector<std::size_t> triangles;  // that have them
+
+    void add(std::initializer_list<std::size_t> at, const auto& in_words) {
+        if (count++ == 0) first = in_words();
+        triangles.insert(triangles.end(), at);
+    }
+    /// `kind` as in "edges".
+    void refuse_any(const std::string& kind) const {
+        if (count == 0) return;
+        refuse(first + (count > 1 ? "; of such " + kind + " there are " + std::to_string(count) : ""), triangles);
+    }
+};
 
 std::string triangle_words(const Draft& d, std::size_t t) {
     const auto [a, b, c] = d.corners(t);
@@ -70,8 +90,12 @@ void check_values(const Draft& d) {
             if (corner < 0 || as_size(corner) >= d.points.size())
                 refuse("has a triangle " + std::to_string(t) + " with a point " + std::to_string(corner) +
                        ", which does not exist: there are " + std::to_string(d.points.size()));
-        if (is_flat(d.corners(t))) refuse("has a triangle of no area: " + triangle_words(d, t));
     }
+    Faults flat;
+    for (std::size_t t = 0; t < d.triangles.size(); ++t)
+        if (is_flat(d.corners(t)))
+            flat.add({t}, [&] { return "has a triangle of no area: " + triangle_words(d, t); });
+    flat.refuse_any("triangles");
 }
 
 /// Per triangle and edge, from corner i to the next, the triangle beyond and its edge.
@@ -94,21 +118,32 @@ Neighbours neighbours(const Draft& d) {
         }
     std::ranges::sort(sides, {}, [](const Side& s) { return std::pair(std::pair(s.low, s.high), s.triangle); });
     Neighbours beyond(d.triangles.size());
+    Faults open, many, turned;
     for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
         while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
         const Side& one = sides[i];
-        const std::string edge = end - i == 2 ? "" : edge_words(d, one.low, one.high);
-        if (end - i == 1)
-            refuse("is not closed: " + edge + " has but one triangle, " + std::to_string(one.triangle));
-        if (end - i > 2)
-            refuse("is not a manifold: " + edge + " has " + std::to_string(end - i) + " triangles");
+        const auto edge = [&] { return edge_words(d, one.low, one.high); };
+        if (end - i == 1) {
+            open.add({one.triangle}, [&] {
+                return "is not closed: " + edge() + " has but one triangle, " + std::to_string(one.triangle);
+            });
+            continue;
+        }
         const Side& other = sides[i + 1];
-        if (one.rising == other.rising)
-            refuse("has triangles that are turned against each other: " + std::to_string(one.triangle) + " and " +
-                   std::to_string(other.triangle) + " at " + edge_words(d, one.low, one.high));
+        if (end - i > 2) {
+            many.add({}, [&] { return "is not a manifold: " + edge() + " has " + std::to_string(end - i) + " triangles"; });
+            for (std::size_t k = i; k < end; ++k) many.triangles.push_back(sides[k].triangle);
+        } else if (one.rising == other.rising) {
+            turned.add({one.triangle, other.triangle}, [&] {
+                return "has triangles that are turned against each other: " + std::to_string(one.triangle) + " and " +
+                       std::to_string(other.triangle) + " at " + edge();
+            });
+        }
         beyond[one.triangle][one.edge] = {other.triangle, other.edge};
         beyond[other.triangle][other.edge] = {one.triangle, one.edge};
     }
+    for (const Faults& faults : {open, many}) faults.refuse_any("edges");
+    turned.refuse_any("edges");
     return beyond;
 }
 
@@ -116,6 +151,7 @@ Neighbours neighbours(const Draft& d) {
 void check_rings(const Draft& d, const Neighbours& beyond) {
     std::vector<std::size_t> corners_at(d.points.size(), 0);
     std::vector<char> is_known(d.points.size(), 0);
+    Faults touching;
     for (const Triangle& triangle : d.triangles)
         for (int point : triangle) ++corners_at[as_size(point)];
     for (std::size_t t = 0; t < d.triangles.size(); ++t)
@@ -129,8 +165,10 @@ void check_rings(const Draft& d, const Neighbours& beyond) {
                 here = {there.triangle, next(there.edge)};
                 ++around;
             } while (here.triangle != t);
-            if (around != corners_at[as_size(point)]) refuse("touches itself at " + point_words(d, point));
+            if (around != corners_at[as_size(point)])
+                touching.add({t}, [&] { return "touches itself at " + point_words(d, point); });
         }
+    touching.refuse_any("points");
 }
 
 /// Per triangle, the number of the connected part it is of.
@@ -161,13 +199,15 @@ void check_crossings(const Draft& d) {
     std::vector<Extent> boxes;
     for (std::size_t t = 0; t < d.triangles.size(); ++t) boxes.push_back(extent(d.corners(t)));
     const BoxTree tree(boxes);
+    Faults cuts;
     for (std::size_t t = 0; t < d.triangles.size(); ++t)
         tree.any(boxes[t], [&](std::size_t other) {
             if (other <= t || share_a_corner(d.triangles[t], d.triangles[other])) return false;
             if (pierce(d.corners(t), d.corners(other)))
-                refuse("cuts itself: " + triangle_words(d, t) + " and " + triangle_words(d, other));
+                cuts.add({t, other}, [&] { return "cuts itself: " + triangle_words(d, t) + " and " + triangle_words(d, other); });
             return false;
         });
+    cuts.refuse_any("pairs");
 }
 
 /// Six times the volume below the triangle, seen from `origin`.
@@ -175,11 +215,25 @@ double volume_below(const Corners& t, const Vec3& origin) {
     return determinant(t[0] - origin, t[1] - origin, t[2] - origin);
 }
 
+/// A connected part: its triangles, and the box that just holds it.
+struct Part {
+    std::vector<std::size_t> triangles;
+    Extent held;
+};
+std::vector<Part> parts_with(const Draft& d, const std::vector<std::size_t>& part, std::size_t count) {
+    std::vector<Part> parts(count);
+    for (std::size_t t = 0; t < part.size(); ++t) {
+        parts[part[t]].triangles.push_back(t);
+        for (const Vec3& x : d.corners(t)) parts[part[t]].held.take_in(x);
+    }
+    return parts;
+}
+
 /// How often a part goes round `x`, which is not on it: 1 or -1 inside, 0 outside [Van Oosterom, Strackee 1983].
-int winding(const Draft& d, const std::vector<std::size_t>& part, std::size_t of, const Vec3& x) {
+int winding(const Draft& d, const Part& part, const Vec3& x) {
+    if (part.held.squared_distance(x) > 0) return 0;
     double angle = 0;
-    for (std::size_t t = 0; t < d.triangles.size(); ++t) {
-        if (part[t] != of) continue;
+    for (std::size_t t : part.triangles) {
         const Vec3 a = d.corner(t, 0) - x, b = d.corner(t, 1) - x, c = d.corner(t, 2) - x;
         const double u = norm(a), v = norm(b), w = norm(c);
         angle += 2 * std::atan2(determinant(a, b, c), u * v * w + dot(a, b) * w + dot(b, c) * u + dot(c, a) * v);
@@ -206,13 +260,14 @@ bool turn_out(const Draft& d, const std::vector<std::size_t>& part) {
         for (Triangle& triangle : d.triangles) std::swap(triangle[1], triangle[2]);
         for (double& v : volume) v = -v;
     }
+    const std::vector<Part> parts = parts_with(d, part, first.size());
     for (std::size_t p = 0; p < first.size(); ++p) {
         int around = 0;
         for (std::size_t other = 0; other < first.size(); ++other)
-            if (other != p) around += winding(d, part, other, d.corner(first[p], 0));
+            if (other != p) around += winding(d, parts[other], d.corner(first[p], 0));
         if (around == (volume[p] > 0 ? 0 : 1)) continue;
         refuse("has a part that " + std::string(volume[p] > 0 ? "lies within another" : "is inside out") +
-               ": that of " + triangle_words(d, first[p]));
+               ": that of " + triangle_words(d, first[p]), {first[p]});
     }
     return turned;
 }

@@ -1,9 +1,19 @@
 #pragma once
 
+#include <kropla/base/error.h>
 #include "domain/triangle_tree.h"
 #include <kropla/domain/shape.h>
 
+#include <string>
+#include <utility>
+
 namespace kropla {
+
+/// What is wrong with triangles that are to bound a volume; and the numbers of those that are at fault, where it is they.
+struct SurfaceError : DomainError {
+    SurfaceError(const std::string& what, std::vector<std::size_t> at) : DomainError(what), triangles(std::move(at)) {}
+    std::vector<std::size_t> triangles;
+};
 
 /// A closed surface of triangles, in one part or several, which bounds a volume: made by `make_surface`.
 class TriangulatedSurface {
@@ -46,7 +56,7 @@ private:
 /// outside; all of them are turned round if what they bound is inside out. Points that are in one place are one point:
 /// files of triangles without numbers (STL) are to be joined first. Parts may be beside each other, or a hollow within
 /// a part, turned to the other side.
-/// Throws DomainError, naming triangle, edge or point and its place, if there is nothing, a number is not finite or has
+/// Throws SurfaceError, naming the first triangle, edge or point and its place, and how many there are, if there is nothing, a number is not finite or has
 /// no point, a triangle has no area, an edge has not just two triangles (open; or not manifold), these are turned
 /// against each other, triangles touch in a point only, or cut each other, or a part lies within another and is turned
 /// as that one.

@@ -2,6 +2,7 @@
 
 #include "generate/clearance.h"
 
+#include "domain/body_tree.h"
 #include "domain/layer_room.h"
 #include "generate/box.h"
 
@@ -9,11 +10,14 @@
 
 namespace kropla {
 
-double clearance(const Snapshot& at, const Vec3& x) {
-    const double size = target_size(at, x);
-    return std::min(distance_to_walls(at.box, x) - clearance_at_walls * size,
-                    distance_to_shells(at, x) - clearance_at_bodies * size);
+SizeAndClearance size_and_clearance(const Snapshot& at, const Vec3& x) {
+    const DistancesFrom distances(at, x);
+    const double size = target_size(at, distances);
+    return {size, std::min(distance_to_walls(at.box, x) - clearance_at_walls * size,
+                           distance_to_shells(at, distances) - clearance_at_bodies * size)};
 }
+
+double clearance(const Snapshot& at, const Vec3& x) { return size_and_clearance(at, x).clearance; }
 
 double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x) {
     Box widened = at.box;  // so that the face itself does not count

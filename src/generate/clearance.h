@@ -13,6 +13,12 @@ namespace kropla {
 inline constexpr double clearance_at_walls = 0.55;
 inline constexpr double clearance_at_bodies = 0.70;
 
+/// The target size at `x` and what `clearance` is there, at the cost of one [m].
+struct SizeAndClearance {
+    double size, clearance;
+};
+[[nodiscard]] SizeAndClearance size_and_clearance(const Snapshot& at, const Vec3& x);
+
 /// How far `x` is beyond what is to be kept from walls and bodies [m]; negative: too near to one.
 [[nodiscard]] double clearance(const Snapshot& at, const Vec3& x);
 

@@ -2,6 +2,7 @@ list(APPEND KROPLA_MESH_FILES
     generate/box.cpp
     generate/clearance.cpp
     generate/conform.cpp
+    generate/creases.cpp
     generate/delaunay.cpp
     generate/delaunay_kernel.cpp
     generate/hilbert.cpp
@@ -10,7 +11,9 @@ list(APPEND KROPLA_MESH_FILES
     generate/normals.cpp
     generate/points.cpp
     generate/relax.cpp
+    generate/resample.cpp
     generate/sampling.cpp
+    generate/sheet.cpp
     generate/skin.cpp
     generate/surface.cpp
 )

@@ -27,6 +27,7 @@ struct Triangulation {
 struct Surface {
     std::vector<Vec3> points;
     std::vector<std::array<int, 3>> triangles;
+    std::vector<std::array<int, 2>> creases = {};  // sharp edges, which are kept; each by its ends, the lower one first
 };
 /// The volume inside a closed surface [m^3]; the sum over its triangles is compensated [Neumaier 1974], so that
 /// it is right to rounding, whatever their number. `inside` is a point in it.
@@ -34,10 +35,12 @@ struct Surface {
 /// Scales a surface around a shape's centre about it, until the polyhedron holds the shape's volume.
 void give_volume(Surface& surface, const Shape& shape);
 
-/// Covers the surface of an ellipsoid with well-shaped triangles of edge length near `size` [m]. The polyhedron
-/// holds the shape's volume to rounding: its vertices lie on the shape blown up about its centre,
+/// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]. Of an ellipsoid the polyhedron
+/// holds the volume to rounding: its vertices lie on the shape blown up about its centre,
 /// `outward_shift` (domain.h) away from its surface at most, and that surface runs between them and the
-/// triangles' middles.
+/// triangles' middles. Of what triangles bound, sharp edges and corners are kept, and the vertices lie on the surface: a
+/// body with flat faces between such edges has its volume to rounding, of a curved part that of a polyhedron inscribed
+/// (resample.h).
 [[nodiscard]] Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed,
                                           const Watch* watch = nullptr);
 
@@ -54,8 +57,8 @@ struct PointSet {
 /// faces of the box as patches, and the prism layers that bodies have: a body's outside before its inside,
 /// tets ending at walls and shells. Where a triangle of a surface is not a facet, points that stand in its
 /// way are removed and surface points are added until it is.
-/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform, or a body is none
-/// of the ellipsoids; Interrupted if the watch says so.
+/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform; Interrupted if the
+/// watch says so.
 [[nodiscard]] Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch = nullptr);
 
 /// The mesh without free slots, its vertices and cells numbered along a Hilbert curve, so that what is near in

@@ -17,7 +17,7 @@
 #include <kropla/generate/generate.h>
 #include "generate/layers.h"
 #include "generate/relax.h"
-#include "generate/skin.h"
+#include "generate/resample.h"
 #include <kropla/mesh/cells.h>
 
 #include <algorithm>
@@ -75,13 +75,14 @@ Draft relaxed_draft(const Snapshot& at, std::uint64_t seed, const Watch* watch) 
     draft.others.resize(draft.walls.size() + 1);
     for (std::size_t i = fixed; i < set.points.size(); ++i)
         draft.others[room_of(at, set.points[i])].push_back(set.points[i]);
+    const Snapshot bounded = bounded_by(draft.walls, at);
     for (std::size_t r = 0; r < draft.others.size(); ++r) {
         if (!in_use(at, r)) continue;
         Room room = empty_room(draft.walls, r, at);
         std::vector<Vec3> points = all_points(room);
         const auto free_from = static_cast<std::ptrdiff_t>(points.size());
         points.insert(points.end(), draft.others[r].begin(), draft.others[r].end());
-        relax_points(points, static_cast<std::size_t>(free_from), at, rounds, watch);
+        relax_points(points, static_cast<std::size_t>(free_from), bounded, rounds, watch);
         draft.others[r].assign(points.begin() + free_from, points.end());
     }
     return draft;
@@ -97,21 +98,8 @@ struct FilledRoom {
 /// Splits the longest edges of `triangles` of the body's wall, and frees the space around the new points.
 void refine_wall(Draft& draft, std::size_t body, const std::vector<std::size_t>& triangles,
                  const Snapshot& at) {
-    Surface& wall = draft.walls[body];
-    const Shape on_wall = through(at.shapes[body], wall.points.front());
-    Skin skin = make_skin(wall, on_wall.centre);
-    const Skin before = skin;
-    for (std::size_t i : triangles) {
-        const Triangle triangle(i);
-        if (skin.triangles[triangle] != before.triangles[triangle])
-            continue;  // split from across an edge of it
-        const Vertex added = split_longest_edge(skin, on_wall, triangle);
-        const double half_edge = distance(skin.points[added], skin.points[skin.triangles[triangle][0]]);
-        for (auto& others : draft.others) clear_sphere(others, at.box, {skin.points[added], half_edge});
-    }
-    flip_edges(skin);
-    wall = surface_of(skin);
-    give_volume(wall, at.shapes[body]);
+    for (const auto& [place, half_edge] : refine_surface(draft.walls[body], triangles, at.shapes[body]))
+        for (auto& others : draft.others) clear_sphere(others, at.box, {place, half_edge});
 }
 
 /// Makes room for the triangles of the room's surfaces that were not found.
@@ -259,9 +247,9 @@ Mesh assembled(const std::vector<Surface>& walls, const std::vector<FilledRoom>&
 Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch) {
     constexpr int recoveries = 20;
     for (const Body& body : domain.bodies)
-        if (body.shape.surface)
-            throw DomainError(named(body) + ": its surface is of triangles, around which no mesh is generated; a mesh "
-                              "that has them as facets can be brought (domain/of_mesh.h)");
+        if (body.shape.surface && body.layer)
+            throw DomainError(named(body) + ": a layer of prisms is made at spheres and ellipsoids only, not at a surface of "
+                              "triangles; without [body.layer] it is meshed");
     check_placement(domain, 0, least_gap_in_sizes);
     check_layers(domain, 0);
     const Snapshot at = snapshot(domain, 0);

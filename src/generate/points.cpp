@@ -8,6 +8,7 @@
 #include "generate/clearance.h"
 #include <kropla/generate/generate.h>
 #include "generate/layers.h"
+#include "generate/resample.h"
 #include "generate/sampling.h"
 
 namespace kropla {
@@ -41,8 +42,16 @@ std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector
 std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& boundary_points,
                                 const std::vector<Vec3>& shell_points, Random random,
                                 const Watch* watch) {
-    const auto spacing = [&](const Vec3& x) { return spacing_inside * target_size(at, x); };
-    const auto room_for = [&](const Vec3& x) { return clearance(at, x); };
+    // Both are asked of the same place, one after the other.
+    Vec3 last = at.box.min;
+    SizeAndClearance found = size_and_clearance(at, last);
+    const auto look = [&](const Vec3& x) {
+        if (x != last) found = size_and_clearance(at, x);
+        last = x;
+        return found;
+    };
+    const auto spacing = [&](const Vec3& x) { return spacing_inside * look(x).size; };
+    const auto room_for = [&](const Vec3& x) { return look(x).clearance; };
     PointGrid taken;
     for (const Vec3& x : boundary_points) taken.insert(x, spacing(x));
     for (const Vec3& x : shell_points) taken.insert(x, spacing(x));
@@ -62,17 +71,18 @@ std::vector<Vec3> sample_shells(const Snapshot& at, const std::vector<Surface>& 
 
 }  // namespace
 
-PointSet sample_points(const Snapshot& at, std::uint64_t seed, const Watch* watch) {
+PointSet sample_points(const Snapshot& as_asked, std::uint64_t seed, const Watch* watch) {
     PointSet set;
     std::size_t stage = 0;
-    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
-        heed(watch, "meshing surfaces", static_cast<double>(body) / static_cast<double>(at.shapes.size()));
+    for (std::size_t body = 0; body < as_asked.shapes.size(); ++body) {
+        heed(watch, "meshing surfaces", static_cast<double>(body) / static_cast<double>(as_asked.shapes.size()));
         set.surfaces.push_back(
-            triangulate_surface(at.shapes[body], surface_size(at, body), stage_seed(seed, stage++), watch));
+            triangulate_surface(as_asked.shapes[body], surface_size(as_asked, body), stage_seed(seed, stage++), watch));
         set.first_of_surface.push_back(static_cast<int>(set.points.size()));
         append(set.points, set.surfaces.back().points);
     }
     heed(watch, "drawing points", 0);
+    const Snapshot at = bounded_by(set.surfaces, as_asked);
     std::vector<Vec3> edge_points = box_corners(at.box);
     append(edge_points, sample_box_edges(at));
     append(set.points, edge_points);

@@ -82,8 +82,16 @@ namespace {
 constexpr std::size_t cells_at_once = 4096;  // between two looks at the watch: some milliseconds
 
 struct Cell {
-    Vec3 centre, half;  // half its widths; 0 where the room is flat [m]
+    Vec3 centre, half;   // half its widths; 0 where the room is flat [m]
+    double spacing = 0;  // as it was asked last, of the cell or of one that it is a part of [m]; 0: never
+    Vec3 asked_at = {};
 };
+
+/// What the spacing at `x` is at least, without asking [m]: a question may cost a search among many triangles.
+double least_spacing(const SampleRule& rule, const Cell& cell, const Vec3& x) {
+    constexpr double rounding = 1e-12;
+    return cell.spacing * (1 - rounding) - rule.spacing_slope * distance(x, cell.asked_at);
+}
 
 /// The two to eight cells that a cell splits into, only across its long axes so that they tend to cubes.
 void split_cell(const Cell& cell, std::vector<Cell>& into) {
@@ -111,11 +119,16 @@ bool is_crowded(const SampleRule& rule, const PointGrid& taken, const Vec3& x, d
 
 /// No point of the cell could be accepted: for want of clearance, or since one neighbour is too near to all
 /// of it. Says yes only where that is sure.
-bool is_covered(const SampleRule& rule, const PointGrid& taken, const Cell& cell) {
-    const double reach = norm(cell.half);
+bool is_covered(const SampleRule& rule, const PointGrid& taken, Cell& cell) {
+    const double reach = norm(cell.half), at_least = least_spacing(rule, cell, cell.centre);
+    const auto crowded = [&](double spacing) {
+        return is_crowded(rule, taken, cell.centre, spacing - (1 + rule.spacing_slope) * reach, spacing);
+    };
+    if (at_least > 0 && crowded(at_least)) return true;
     if (rule.clearance(cell.centre) + rule.clearance_slope * reach < 0) return true;
-    const double spacing = rule.spacing(cell.centre);
-    return is_crowded(rule, taken, cell.centre, spacing - (1 + rule.spacing_slope) * reach, spacing);
+    cell.spacing = rule.spacing(cell.centre);
+    cell.asked_at = cell.centre;
+    return crowded(cell.spacing);
 }
 
 /// The cells in which to begin: no larger than the spacing there, and not covered.
@@ -124,10 +137,10 @@ std::vector<Cell> first_cells(const Box& room, const SampleRule& rule, const Poi
     std::vector<Cell> open = {{0.5 * (room.min + room.max), 0.5 * (room.max - room.min)}}, fine;
     for (std::size_t i = 0; !open.empty(); ++i) {
         if (i % cells_at_once == 0) heed(watch);
-        const Cell cell = open.back();
+        Cell cell = open.back();
         open.pop_back();
         if (is_covered(rule, taken, cell)) continue;
-        if (norm(cell.half) > 0.75 * rule.spacing(cell.centre)) split_cell(cell, open);
+        if (norm(cell.half) > 0.75 * cell.spacing) split_cell(cell, open);
         else fine.push_back(cell);
     }
     return fine;
@@ -148,19 +161,17 @@ Vec3 random_point(const Cell& cell, const Box& room, Random& random) {
 }
 
 /// The parts of the cells that are open still and wide enough to matter.
-std::vector<Cell> open_parts(const std::vector<Cell>& cells, const SampleRule& rule, const PointGrid& taken,
+std::vector<Cell> open_parts(std::vector<Cell>& cells, const SampleRule& rule, const PointGrid& taken,
                              const Watch* watch) {
     constexpr double narrowest_gap = 1e-4;  // of the spacing
     std::vector<Cell> parts, open;
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (i % cells_at_once == 0) heed(watch);
-        const Cell& cell = cells[i];
-        if (is_covered(rule, taken, cell)) continue;
+        if (is_covered(rule, taken, cells[i])) continue;
         parts.clear();
-        split_cell(cell, parts);
-        for (const Cell& part : parts)
-            if (norm(part.half) > narrowest_gap * rule.spacing(part.centre) && !is_covered(rule, taken, part))
-                open.push_back(part);
+        split_cell(cells[i], parts);
+        for (Cell& part : parts)
+            if (!is_covered(rule, taken, part) && norm(part.half) > narrowest_gap * part.spacing) open.push_back(part);
     }
     return open;
 }
@@ -178,6 +189,8 @@ std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& 
         for (std::size_t i = 0; i < open.size(); ++i) {
             if (i % cells_at_once == 0) heed(watch);
             const Vec3 x = random_point(open[i], room, random);
+            const double at_least = least_spacing(rule, open[i], x);
+            if (at_least > 0 && is_crowded(rule, taken, x, at_least, at_least)) continue;
             const double spacing = rule.spacing(x);
             if (rule.clearance(x) < 0 || is_crowded(rule, taken, x, spacing, spacing)) continue;
             taken.insert(x, spacing);

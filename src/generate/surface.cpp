@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include <kropla/generate/generate.h>
+#include "generate/resample.h"
 #include "generate/sampling.h"
 #include "generate/skin.h"
 #include <kropla/mesh/cells.h>
@@ -105,7 +106,27 @@ void give_volume(Surface& surface, const Shape& shape) {
     for (Vec3& x : surface.points) x = shape.centre + factor * (x - shape.centre);
 }
 
+std::vector<Added> refine_surface(Surface& surface, const std::vector<std::size_t>& triangles, const Shape& shape) {
+    if (shape.surface) return refine(surface, triangles, shape);
+    const Shape on_wall = through(shape, surface.points.front());
+    Skin skin = make_skin(surface, on_wall.centre);
+    const Skin before = skin;
+    std::vector<Added> all;
+    for (std::size_t i : triangles) {
+        const Triangle triangle(i);
+        if (skin.triangles[triangle] != before.triangles[triangle])
+            continue;  // split from across an edge of it
+        const Vertex added = split_longest_edge(skin, on_wall, triangle);
+        all.push_back({skin.points[added], distance(skin.points[added], skin.points[skin.triangles[triangle][0]])});
+    }
+    flip_edges(skin);
+    surface = surface_of(skin);
+    give_volume(surface, shape);
+    return all;
+}
+
 Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed, const Watch* watch) {
+    if (shape.surface) return resampled(shape, size, watch);
     assert(size > 0 && size <= least_curvature_radius(shape));
     // Equilateral triangles of edge h have 0.866 h^2 of area per vertex.
     const double wanted = surface_area(shape.semi_axes) / (std::sqrt(0.75) * size * size);

@@ -82,4 +82,16 @@ double region_volume(const Mesh& mesh, Region region) {
     return sum;
 }
 
+std::vector<double> region_volumes(const Mesh& mesh, std::size_t regions) {
+    std::vector<double> sums(regions, 0);
+    const auto add = [&](Region region, double volume) {
+        if (as_size(region.value) < regions) sums[as_size(region.value)] += volume;
+    };
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t)) add(mesh.region[t], volume(mesh, t));
+    for (const Prism& prism : all_prisms(mesh))
+        add(layer_of(mesh, prism.layer).region, prism_volume(prism_corners(mesh, prism)));
+    return sums;
+}
+
 }  // namespace kropla

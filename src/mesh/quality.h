@@ -2,6 +2,8 @@
 
 #include <kropla/mesh/mesh.h>
 
+#include <vector>
+
 #include <span>
 
 namespace kropla {
@@ -27,5 +29,7 @@ struct QualitySummary {
 
 /// Of the tets and prisms of the region [m^3].
 [[nodiscard]] double region_volume(const Mesh& mesh, Region region);
+/// The same of the regions 0 ... `regions` - 1, in one go over the mesh.
+[[nodiscard]] std::vector<double> region_volumes(const Mesh& mesh, std::size_t regions);
 
 }  // namespace kropla

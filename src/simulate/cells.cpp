@@ -85,4 +85,20 @@ RegionSurface region_surface(const Mesh& mesh, Region region) {
     return surface;
 }
 
+std::vector<RegionSurface> region_surfaces(const Mesh& mesh, std::size_t regions) {
+    std::vector<RegionSurface> surfaces(regions);
+    for (Tet t : living_cells(mesh).tets) {
+        const Region region = mesh.region[t];
+        if (as_size(region.value) >= regions) continue;
+        RegionSurface& surface = surfaces[as_size(region.value)];
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Region beyond = region_beyond(mesh, t, corner);
+            if (beyond == region) continue;
+            (beyond.exists() ? surface.interface : surface.outer).push_back(facet_of(mesh, t, corner));
+        }
+    }
+    for (std::size_t region = 0; region < regions; ++region) add_walls(mesh, Region(region), surfaces[region].interface);
+    return surfaces;
+}
+
 }  // namespace kropla

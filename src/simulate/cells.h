@@ -58,6 +58,8 @@ struct RegionSurface {
     std::vector<std::array<Vertex, 3>> outer;      // of the domain
 };
 [[nodiscard]] RegionSurface region_surface(const Mesh& mesh, Region region);
+/// The same of the regions 0 ... `regions` - 1, in one go over the mesh.
+[[nodiscard]] std::vector<RegionSurface> region_surfaces(const Mesh& mesh, std::size_t regions);
 
 /// The facets of cells on each face of the box, with their normal (right hand) out of it.
 using FaceFacets = std::array<std::vector<std::array<Vertex, 3>>, 6>;

@@ -144,7 +144,7 @@ TEST(SurfaceShape, RefusesWhatBoundsNothingAndSaysWhere) {
     Triangles t = box;
     t.triangles.pop_back();
     EXPECT_EQ(refusal_of(t), "the surface is not closed: the edge from point 3 at (1, 1, 0) m to point 5 at (1, 0, 1) m has "
-                             "but one triangle, 10");
+                             "but one triangle, 10; of such edges there are 3");
     t = box;
     std::swap(t.triangles[3][0], t.triangles[3][1]);
     EXPECT_NE(refusal_of(t).find("turned against each other: 2 and 3 at the edge from point 5"), std::string::npos);

@@ -1,0 +1,211 @@
+// Surfaces of any triangles, sampled anew at the target size.
+//
+// After [Botsch, Kobbelt 2004, "A remeshing approach to multiresolution modeling"]: in turn, edges longer than 4/3 of the
+// size are split, those shorter than 4/5 are collapsed, edges are flipped to even out the valences, and points are moved
+// along the surface; creases and corners stay. Changed: the points go to where those of skin.cpp go, and back to the
+// nearest place of the surface as it was; what is far finer than the size is coarsened in stages, so that triangles stay
+// well shaped and work is proportional to their number; at last edges are flipped for angles (sheet.h), for the sake of
+// the Delaunay mesh that has the triangles as facets.
+
+#include "generate/resample.h"
+
+#include <kropla/domain/words.h>
+#include "generate/creases.h"
+#include "generate/triangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace kropla {
+
+namespace {
+
+constexpr double split_above = 4.0 / 3, collapse_below = 4.0 / 5;  // of the size
+
+/// The surface as it was, to which points go back.
+struct Original {
+    const TriangulatedSurface& surface;
+    Creases creases;
+
+    [[nodiscard]] Vec3 nearest(const Vec3& x, Sheet::Hold hold) const {
+        return hold == Sheet::Hold::none ? surface.closest_point(x) : creases.nearest(x);
+    }
+    [[nodiscard]] Vec3 middle(const Sheet& sheet, Half h) const {
+        const Vec3 x = 0.5 * (sheet.place[sheet.origin[h]] + sheet.place[sheet.target(h)]);
+        return nearest(x, sheet.crease[h] != 0 ? Sheet::Hold::on_crease : Sheet::Hold::none);
+    }
+};
+
+/// Once over the edges that there are, the longest first: in another order slivers are made. Returns how many.
+int split_long_edges(Sheet& sheet, const Original& original, double longest) {
+    std::vector<std::pair<double, Half>> found;
+    for (Half h : sheet.origin.indices())
+        if (sheet.alive(h) && h < sheet.twin[h] && sheet.length(h) > longest) found.emplace_back(-sheet.length(h), h);
+    std::ranges::sort(found);
+    for (const auto& [length, h] : found)  // which may name another edge by now
+        if (sheet.length(h) > longest) split_edge(sheet, h, original.middle(sheet, h));
+    return static_cast<int>(found.size());
+}
+
+int collapse_short_edges(Sheet& sheet, double shortest, double longest, const Watch* watch) {
+    constexpr int most_rounds = 20;
+    int all = 0;
+    for (int round = 0, done = 1; done > 0 && round < most_rounds; ++round) {
+        heed(watch);
+        done = 0;
+        for (Half h : sheet.origin.indices()) {
+            if (!sheet.alive(h) || sheet.length(h) >= shortest || !may_collapse(sheet, h, longest)) continue;
+            collapse_edge(sheet, h);
+            ++done;
+        }
+        all += done;
+    }
+    return all;
+}
+
+/// Where the vertex would be best off among its triangles, along them.
+Vec3 drawn_to(const Sheet& sheet, Vertex v) {
+    const Vec3& x = sheet.place[v];
+    if (sheet.hold[v] == Sheet::Hold::on_crease) {
+        Vec3 sum;
+        for_each_leaving(sheet, v, [&](Half h) {
+            if (sheet.crease[h] != 0) sum += sheet.place[sheet.target(h)] - x;
+        });
+        return x + sum / 2;
+    }
+    Vec3 sum;
+    double weight = 0;
+    for_each_leaving(sheet, v, [&](Half h) {
+        const Vec3 &b = sheet.place[sheet.target(h)], &c = sheet.place[sheet.apex(h)];
+        const double area = norm(normal_area(sheet, h));
+        sum += area * (0.5 * (triangle_circumcentre(x, b, c) + (x + b + c) / 3) - x);
+        weight += area;
+    });
+    return x + sum / weight;
+}
+
+/// Would all triangles of the vertex stay well within a right angle of how they stand?
+bool may_move(const Sheet& sheet, Vertex v, const Vec3& to) {
+    constexpr double most_turned = 0.5;  // the cosine
+    bool may = true;
+    for_each_leaving(sheet, v, [&](Half h) {
+        const Vec3 old = normal_area(sheet, h), now = normal_area(sheet, h, v, to);
+        may = may && dot(old, now) > most_turned * norm(old) * norm(now);
+    });
+    return may;
+}
+
+void move_points(Sheet& sheet, const Original& original) {
+    for (Vertex v : sheet.place.indices()) {
+        if (!sheet.leaving[v].exists() || sheet.hold[v] == Sheet::Hold::corner) continue;
+        const Vec3 by = drawn_to(sheet, v) - sheet.place[v];
+        if (!is_finite(by)) continue;  // a triangle without area
+        for (double part : {1.0, 0.5, 0.25}) {
+            const Vec3 to = original.nearest(sheet.place[v] + part * by, sheet.hold[v]);
+            if (!may_move(sheet, v, to)) continue;
+            sheet.place[v] = to;
+            break;
+        }
+    }
+}
+
+double mean_length(const Sheet& sheet) {
+    double sum = 0;
+    for (Half h : sheet.origin.indices()) sum += sheet.length(h);
+    return sum / static_cast<double>(sheet.origin.size());
+}
+
+/// Splits what is too long, and coarsens in stages what is too fine.
+void bring_near(Sheet& sheet, const Original& original, double size, const Watch* watch) {
+    constexpr int most_rounds = 30;  // each halves the longest edges
+    constexpr double stage = 1.5;
+    for (int round = 0; round < most_rounds && split_long_edges(sheet, original, split_above * size) > 0; ++round)
+        flip_for_angles(sheet, watch);
+    for (double at = stage * std::min(size, mean_length(sheet)); at < size; at *= stage) {
+        if (collapse_short_edges(sheet, collapse_below * at, split_above * size, watch) == 0) continue;
+        sheet = compacted(sheet);
+        flip_for_angles(sheet, watch);
+    }
+}
+
+void relax(Sheet& sheet, const Original& original, double size, const Watch* watch) {
+    constexpr int rounds = 12, fine_rounds = 15, moves = 3;
+    for (int round = 0; round < rounds; ++round) {
+        heed(watch);
+        split_long_edges(sheet, original, split_above * size);
+        collapse_short_edges(sheet, collapse_below * size, split_above * size, watch);
+        sheet = compacted(sheet);
+        flip_for_valences(sheet);
+        for (int i = 0; i < moves; ++i) move_points(sheet, original);
+    }
+    for (int round = 0; round < fine_rounds; ++round) {
+        flip_for_angles(sheet, watch);
+        move_points(sheet, original);
+    }
+    flip_for_angles(sheet, watch);
+}
+
+/// The points of the shape's surface, given by its own axes, where it stands; and back.
+void put_in_place(Surface& surface, const Shape& shape) {
+    for (Vec3& x : surface.points) x = shape.centre + rotated(shape.orientation, x);
+}
+void take_back(Surface& surface, const Shape& shape) {
+    for (Vec3& x : surface.points) x = rotated_back(shape.orientation, x - shape.centre);
+}
+
+}  // namespace
+
+Surface resampled(const Shape& shape, double size, const Watch* watch) {
+    Sheet sheet = sheet_of(*shape.surface);
+    const Original original{*shape.surface, Creases(sheet)};
+    bring_near(sheet, original, size, watch);
+    relax(sheet, original, size, watch);
+    Surface surface = surface_of(sheet);
+    put_in_place(surface, shape);
+    return surface;
+}
+
+Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
+    Snapshot bounded = at;
+    for (std::size_t body = 0; body < walls.size(); ++body) {
+        Shape& shape = bounded.shapes[body];
+        if (!shape.surface) continue;
+        std::vector<Vec3> points = walls[body].points;
+        for (Vec3& x : points) x -= shape.centre;
+        try {
+            shape = shape_within(make_surface(std::move(points), walls[body].triangles), shape.centre);
+        } catch (const SurfaceError& error) {
+            throw DomainError("body " + std::to_string(body + 1) + ": at its target size of " +
+                              metres(surface_size(at, body)) + " " + error.what() +
+                              " (from its centre); a part of it is thinner than that: a smaller size would do");
+        }
+    }
+    return bounded;
+}
+
+std::vector<Added> refine(Surface& surface, const std::vector<std::size_t>& triangles, const Shape& shape) {
+    const Original original{*shape.surface, Creases(sheet_of(*shape.surface))};
+    take_back(surface, shape);
+    Sheet sheet = make_sheet(surface);
+    std::vector<Added> added;
+    const Array<Half, Vertex> before = sheet.origin;
+    for (std::size_t t : triangles) {
+        const Half first(3 * t);
+        const std::array halves = {first, next(first), previous(first)};
+        if (std::ranges::any_of(halves, [&](Half h) { return sheet.origin[h] != before[h]; }))
+            continue;  // split from across an edge of it
+        const Half longest = *std::ranges::max_element(halves, {}, [&](Half h) { return sheet.length(h); });
+        const double half_edge = 0.5 * sheet.length(longest);
+        const Vec3 middle = original.middle(sheet, longest);
+        split_edge(sheet, longest, middle);
+        added.push_back({shape.centre + rotated(shape.orientation, middle), half_edge});
+    }
+    flip_for_angles(sheet);
+    surface = surface_of(sheet);
+    put_in_place(surface, shape);
+    return added;
+}
+
+}  // namespace kropla

@@ -1,0 +1,154 @@
+// Surfaces of triangles, sampled anew and meshed.
+#include "base/random.h"
+#include "domain/surfaces.h"
+#include "generate/creases.h"
+#include <kropla/generate/generate.h>
+#include "generate/resample.h"
+#include "generate/sheet.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
+#include <kropla/mesh/verify.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace kropla;
+
+namespace {
+
+Shape shape_of(const Triangles& t, const Vec3& centre = {}, const Rotation& turned = {}) {
+    return shape_within(make_surface(t.points, t.triangles), centre, turned);
+}
+
+/// Two blocks that make an L of volume 3, in the plane z; its flat sides are of long triangles.
+Triangles l_block() {
+    const std::vector<Vec3> corners = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+    Triangles t;
+    for (double z : {0.0, 1.0})
+        for (Vec3 x : corners) t.points.push_back({x.x, x.y, z});
+    for (auto [a, b, c] : {std::array{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}}) {
+        t.triangles.push_back({a, c, b});
+        t.triangles.push_back({a + 6, b + 6, c + 6});
+    }
+    for (int i = 0; i < 6; ++i) {
+        const int j = (i + 1) % 6;
+        t.triangles.push_back({i, j, j + 6});
+        t.triangles.push_back({i, j + 6, i + 6});
+    }
+    return t;
+}
+
+Triangles torus(double large, double small, int around, int across) {
+    Triangles t;
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j < across; ++j) {
+            const double a = 2 * std::numbers::pi * i / around, b = 2 * std::numbers::pi * j / across;
+            const double r = large + small * std::cos(b);
+            t.points.push_back({r * std::cos(a), r * std::sin(a), small * std::sin(b)});
+            const auto at = [&](int k, int l) { return k % around * across + l % across; };
+            t.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            t.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return t;
+}
+
+/// [degrees]
+double least_angle(const Surface& s) {
+    double least = 180;
+    for (const auto& triangle : s.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto at = [&](std::size_t k) { return s.points[static_cast<std::size_t>(triangle[k % 3])]; };
+            const Vec3 u = at(i + 1) - at(i), v = at(i + 2) - at(i);
+            least = std::min(least, std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / std::numbers::pi);
+        }
+    return least;
+}
+
+int euler(const Surface& s) { return static_cast<int>(s.points.size()) - static_cast<int>(s.triangles.size()) / 2; }
+
+Domain domain_with(Shape shape, double size) {
+    Domain domain{{{-3, -3, -3}, {3, 3, 3}}, {}, {size, 0.3, 1}};
+    domain.bodies.push_back({"body", std::move(shape)});
+    return domain;
+}
+
+void expect_mesh(const Domain& domain, double volume) {
+    const Mesh mesh = generate_mesh(domain, 1);
+    EXPECT_EQ(verify(mesh), "");
+    EXPECT_NEAR(region_volume(mesh, Region(1)) / volume, 1, 1e-12);
+    EXPECT_NEAR((region_volume(mesh, surroundings) + volume) / 216, 1, 1e-12);
+}
+
+}  // namespace
+
+TEST(Sheet, IsTheSameSurfaceAfterAThousandOperations) {
+    constexpr std::uint64_t seed = 3;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random{seed};
+    const Triangles t = l_block();
+    Sheet sheet = sheet_of(make_surface(t.points, t.triangles));
+    int splits = 0, flips = 0, collapses = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Half h(random.below(sheet.origin.size()));
+        if (!sheet.alive(h)) continue;
+        const double what = random.uniform();
+        if (what < 0.3) {
+            split_edge(sheet, h, 0.5 * (sheet.place[sheet.origin[h]] + sheet.place[sheet.target(h)]));
+            ++splits;
+        } else if (what < 0.6 && may_flip(sheet, h)) {
+            flip_edge(sheet, h);
+            ++flips;
+        } else if (what > 0.6 && may_collapse(sheet, h, 3)) {
+            collapse_edge(sheet, h);
+            ++collapses;
+        }
+        const Surface now = surface_of(sheet);
+        ASSERT_NO_THROW((void)make_surface(now.points, now.triangles)) << i;
+        ASSERT_NEAR(enclosed_volume(now, {}), 3, 1e-13) << i;
+        ASSERT_EQ(euler(now), 2);
+    }
+    EXPECT_GT(splits, 100);
+    EXPECT_GT(flips, 50);
+    EXPECT_GT(collapses, 50);
+}
+
+TEST(Resampled, FlatFacesKeepVolumeEdgesAndCorners) {
+    for (double size : {0.5, 0.2}) {
+        const Shape shape = shape_of(l_block(), {0.3, -1, -0.5}, rotation_about({1, 2, 3}, 0.7));
+        const Surface s = resampled(shape, size);
+        EXPECT_NEAR(enclosed_volume(s, shape.centre), 3, 1e-13);
+        for (const Vec3& x : s.points) EXPECT_NEAR(signed_distance(shape, x), 0, 1e-14);
+        double length = 0;
+        for (const auto& [a, b] : s.creases)
+            length += distance(s.points[static_cast<std::size_t>(a)], s.points[static_cast<std::size_t>(b)]);
+        EXPECT_NEAR(length, 22, 1e-12);
+        EXPECT_GT(least_angle(s), 25);
+        EXPECT_EQ(euler(s), 2);
+    }
+}
+
+TEST(Resampled, SmoothSurfacesFineOrCoarseBecomeWellShapedTriangles) {
+    const Shape ring = shape_of(torus(1, 0.4, 60, 30)), ball = shape_of(sphere_of_triangles(5)), few = shape_of(sphere_of_triangles(2));
+    for (const auto& [shape, size, holes] : {std::tuple{ring, 0.15, 1}, {ball, 0.3, 0}, {few, 0.1, 0}}) {
+        const Surface s = resampled(shape, size);
+        EXPECT_EQ(euler(s), holes == 1 ? 0 : 2);
+        EXPECT_TRUE(s.creases.empty());
+        for (const Vec3& x : s.points) EXPECT_NEAR(signed_distance(shape, x), 0, 1e-14);
+        EXPECT_GT(least_angle(s), 27);
+        EXPECT_NEAR(std::sqrt(shape.surface->area() / (std::sqrt(0.75) * static_cast<double>(s.points.size()))) / size, 1, 0.112);
+    }
+}
+
+TEST(GenerateMesh, TakesAnyClosedSurface) {
+    const Rotation turned = rotation_about({1, -2, 0.5}, 0.4);
+    expect_mesh(domain_with(shape_of(box_of_triangles({-1, -1, -1}, {1, 1, 1})), 0.6), 8);
+    expect_mesh(domain_with(shape_of(l_block(), {-1, -0.8, 0.1}, turned), 0.4), 3);
+    const Triangles hollow = together(box_of_triangles({-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}),
+                                      turned_round(box_of_triangles({-0.7, -0.7, -0.7}, {0.7, 0.7, 0.7})));
+    const Triangles both = together(hollow, box_of_triangles({1.9, 0, 0}, {2.5, 0.6, 0.6}));
+    expect_mesh(domain_with(shape_of(both), 0.5), 27 - 2.744 + 0.216);
+    const Shape ring = shape_of(torus(1, 0.4, 40, 20), {0.2, 0.1, -0.3}, turned);
+    expect_mesh(domain_with(ring, 0.25), enclosed_volume(resampled(ring, 0.25), ring.centre));
+}
