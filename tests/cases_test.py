@@ -41,7 +41,7 @@ SHORT = {
 }
 @dataclass
 class ShortFlow:
-    """A case with a flow, coarser and shorter. Columns of the last step are within bounds: of the drag in the cube, what is
+    """A case with a flow, or in a mesh that is brought, coarser or shorter. Columns of the last step are within bounds: of the drag in the cube, what is
     known, give or take a tenth more than it is off; else what was reached, give or take little."""
 
     settings: list
@@ -62,6 +62,16 @@ FLOWS = {
     "arc_flight": ShortFlow(["size.surface=2.2e-4", "size.growth=0.3", "size.far=1.5e-3", "time.steps=3", "time.end=3e-4"],
                             {"w_droplet [m/s]": (-0.437, -0.433), "temperature_mean_droplet [K]": (2402.3, 2402.8),
                              "temperature_max_droplet [K]": (2415, 2418)}),
+}
+# In meshes that are brought, likewise: where the body is, its volume as it was read, how good the mesh is.
+FLOWS |= {
+    "shifting_ball": ShortFlow(["time.end=0.1", "time.steps=4"],
+                               {"max_aspect_ratio": (5, 6.8), "x_ball [m]": (0.1469463, 0.1469464),
+                                "volume_ball [m^3]": (0.249992696073, 0.249992696074), "energy_error [J]": (-1e-9, 1e-9)}),
+    "turning_cube": ShortFlow(["time.end=0.25", "time.steps=5"],
+                              {"max_aspect_ratio": (4, 5.7), "z_rotor [m]": (1.875 - 1e-12, 1.875 + 1e-12),
+                               "volume_rotor [m^3]": (0.125 - 1e-13, 0.125 + 1e-13), "energy_error [J]": (-1e-9, 1e-9),
+                               "temperature_mean_rotor [K]": (382, 383)}),
 }
 CONSERVED = 1e-12  # [-] energy and volumes over the whole run, and each transfer: rounding
 

@@ -5,10 +5,12 @@
 #include "app/case_contact.h"
 #include "app/case_flow.h"
 #include "app/case_heat.h"
+#include "app/case_mesh.h"
 #include "app/case_species.h"
 #include "app/case_parameters.h"
 #include "app/case_setting.h"
 #include "app/case_table.h"
+#include "app/mesh_size.h"
 #include <kropla/base/error.h>
 #include "io/file.h"
 
@@ -26,7 +28,7 @@ constexpr double least_weight = 0.001;  // [-] of the larger of the paper's two;
 constexpr double least_floor = 5;  // [-] R/r; what is better is good enough for AdaptOptions, and left alone
 
 Box read_box(const CaseTable& table) {
-    table.allow({"min", "max"});
+    table.allow({"min", "max", "mesh"});
     const Box box{table.place("min"), table.place("max")};
     for (int axis = 0; axis < 3; ++axis) {
         if (box.min[axis] < box.max[axis]) continue;
@@ -47,18 +49,37 @@ void check_resolved(const CaseTable& table, double surface, const Box& box) {
                                               least_resolved * farthest, farthest));
 }
 
-SizeField read_size(const CaseTable& table, const Box& box) {
+/// With `own`, the size that a mesh has already, whatever is left out is of that.
+SizeField read_size(const CaseTable& table, const Box& box, const std::optional<SizeField>& own) {
     table.allow({"surface", "growth", "far"});
-    SizeField size;
-    size.surface = table.length("surface");
-    check_resolved(table, size.surface, box);
-    size.far = table.length("far");
+    SizeField size = own.value_or(SizeField{});
+    if (!own || table.has("surface")) size.surface = table.length("surface");
+    if (!own || table.has("surface")) check_resolved(table, size.surface, box);
+    if (!own || table.has("far")) size.far = table.length("far");
+    else size.far = std::max(size.far, size.surface);
     if (table.has("growth")) size.growth = table.number("growth");
     if (!(size.growth >= 0 && size.growth <= 1)) table.refuse_value("growth", "must be from 0 to 1");
     if (size.far < size.surface) {
         table.refuse_value("far", fmt::format("must be at least surface = {}", size.surface));
     }
     return size;
+}
+
+/// The box, or a mesh that brings its own; the bodies; and the target size.
+void read_domain(const CaseTable& file, const std::string& name, Case& it) {
+    const CaseTable table = file.table("domain");
+    std::optional<SizeField> own;
+    if (table.has("mesh")) {
+        table.allow({"min", "max", "mesh"});
+        const CaseMesh mesh = read_case_mesh(table, name);
+        take_case_mesh(table, mesh, read_region_bodies(file, mesh, it), it);
+        own = size_of_mesh(*it.mesh->mesh, it.domain);
+    } else {
+        it.domain.box = read_box(table);
+        read_bodies(file, it);
+    }
+    if (own && !file.has("size")) it.domain.size = *own;
+    else it.domain.size = read_size(file.table("size"), it.domain.box, own);
 }
 
 /// The weights of the paper's Laplacian; only their ratio counts.
@@ -128,15 +149,15 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     file.allow({"parameters", "domain", "body", "size", "quality", "time", "heat", "species", "flow", "contact", "output", "random"});
     if (file.has("parameters")) read_parameters(file.table("parameters"), reading);
     Case it;
-    it.domain.box = read_box(file.table("domain"));
-    read_bodies(file, it);
-    it.domain.size = read_size(file.table("size"), it.domain.box);
+    read_domain(file, name, it);
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
     read_species(file, it);
     read_flow(file, it);
     read_contact(file, it);
+    if (it.flow && it.domain.walls)
+        file.table("domain").refuse("mesh", "has a boundary that is not in the faces of its box; [flow] knows none but those");
     if (it.time.courant && !it.flow) file.table("time").refuse("courant", "needs [flow]: what is to cross no more cells in a step");
     if (file.has("output")) it.output = read_output(file.table("output"));
     if (file.has("random")) it.random = read_random(file.table("random"));

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,7 +54,8 @@ using WrittenKeys = std::vector<std::pair<std::string, std::string>>;
 
 /// How the user put what the structs of a case hold in another form, each as a TOML value. Empty: not given.
 struct WrittenBody {
-    std::string shape;  // "sphere" or "ellipsoid", without quotes
+    std::string shape;  // "sphere", "ellipsoid" or "region", without quotes
+    std::string region = {};  // of the mesh that the case brings, as TOML
     std::string rotation;
     std::array<std::string, 3> motion;  // all empty: at rest, or free
     WrittenKeys free;                   // its motion, if it goes where forces take it
@@ -75,6 +77,13 @@ struct WrittenSpecies {
     WrittenKeys faces;
 };
 
+/// A mesh from elsewhere, in place of one that is made.
+struct BroughtMesh {
+    std::string file;                  // absolute
+    std::shared_ptr<const Mesh> mesh;  // region i + 1 is body i, as in the domain; not improved yet
+    std::vector<std::string> notes;    // what was mended when it was read
+};
+
 /// What flows, and how it begins.
 struct FlowPlan {
     FlowOptions options;
@@ -84,6 +93,7 @@ struct FlowPlan {
 /// All that a run is told, SI units.
 struct Case {
     Domain domain;
+    std::optional<BroughtMesh> mesh;  // nothing: it is made for the domain
     QualityPlan quality;
     TimePlan time;
     std::optional<HeatOptions> heat;  // nothing: the mesh moves, nothing is simulated

@@ -6,6 +6,7 @@
 #include "app/case_heat.h"
 #include "app/check_files.h"
 #include "app/command_line.h"
+#include "app/first_mesh.h"
 #include "app/foresight.h"
 #include "app/interrupt.h"
 #include "app/mesh_commands.h"
@@ -61,7 +62,7 @@ Mesh written_mesh_of(const Case& it, const std::filesystem::path& out, Watch& wa
         watch.progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
     try {
         warn(foresee(it, &watch));
-        Mesh mesh = initial_mesh(it.domain, adapt_options(it, &watch));
+        Mesh mesh = first_mesh(it, &watch);
         write_initial(it, mesh, out, &watch);
         return mesh;
     } catch (const Interrupted&) {

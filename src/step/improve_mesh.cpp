@@ -3,6 +3,7 @@
 
 #include <kropla/step/improve_mesh.h>
 
+#include "adapt/budget.h"
 #include <kropla/mesh/cells.h>
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/topology.h>
@@ -51,13 +52,12 @@ Changes improve_mesh(Mesh& mesh, const AdaptOptions& options) {
     AdaptOptions alone = options;
     alone.clusters = false;  // for these a size is needed
     Changes changes = improve(mesh, all_tets(mesh), of_size(no_size), alone);
-    AdaptOptions with_clusters = options;
-    with_clusters.floor = options.good_enough;
-    with_clusters.whole_region = false;
+    const double most_cut_out = cells_to_cut_out(as_size(count_tets(mesh)), options);
     for (const Tet t : worse_than(mesh, options.good_enough)) {
         heed(options.watch);
+        if (changes.cut_out > most_cut_out) break;
         if (!alive(mesh, t) || aspect_ratio(mesh, t) <= options.good_enough) continue;
-        changes += improve(mesh, std::vector{t}, of_size(size_around(mesh, t)), with_clusters);
+        changes += improve(mesh, std::vector{t}, of_size(size_around(mesh, t)), options);
     }
     return changes;
 }
