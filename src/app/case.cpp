@@ -8,6 +8,7 @@
 #include "app/case_mesh.h"
 #include "app/case_species.h"
 #include "app/case_parameters.h"
+#include "app/case_patches.h"
 #include "app/case_setting.h"
 #include "app/case_table.h"
 #include "app/mesh_size.h"
@@ -150,14 +151,13 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     if (file.has("parameters")) read_parameters(file.table("parameters"), reading);
     Case it;
     read_domain(file, name, it);
+    name_faces(file, it, table);
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
     read_species(file, it);
     read_flow(file, it);
     read_contact(file, it);
-    if (it.flow && it.domain.walls)
-        file.table("domain").refuse("mesh", "has a boundary that is not in the faces of its box; [flow] knows none but those");
     if (it.time.courant && !it.flow) file.table("time").refuse("courant", "needs [flow]: what is to cross no more cells in a step");
     if (file.has("output")) it.output = read_output(file.table("output"));
     if (file.has("random")) it.random = read_random(file.table("random"));

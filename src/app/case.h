@@ -82,6 +82,7 @@ struct BroughtMesh {
     std::string file;                  // absolute
     std::shared_ptr<const Mesh> mesh;  // region i + 1 is body i, as in the domain; not improved yet
     std::vector<std::string> notes;    // what was mended when it was read
+    std::map<std::string, Patch> faces = {};  // of named patches that are a face of the box; of others, none
 };
 
 /// What flows, and how it begins.

@@ -1,6 +1,7 @@
 // [domain] mesh: what others have meshed, made the mesh of a case.
 #include "app/case_mesh.h"
 
+#include "app/case_patches.h"
 #include <kropla/base/error.h>
 #include <kropla/domain/of_mesh.h>
 #include <kropla/io/fixed_mesh.h>
@@ -140,7 +141,7 @@ void take_case_mesh(const CaseTable& domain, const CaseMesh& brought, const std:
             domain.refuse("mesh", fmt::format("{}: body {}: {}", brought.file, toml_text(it.domain.bodies[body].name), error.what()));
         }
     }
-    it.mesh = BroughtMesh{brought.file, mesh, brought.notes};
+    it.mesh = BroughtMesh{brought.file, mesh, brought.notes, faces_of_patches(*mesh, brought.cells)};
 }
 
 }  // namespace kropla

@@ -96,8 +96,6 @@ TEST_F(CaseMeshTest, WhatIsInNoFaceStaysAsItIs) {
     EXPECT_EQ(patch_numbers(cells_of(*it.mesh->mesh)), (std::vector{1, 3, 4, 5, 6, 7}));  // x min is still a plane
     Domain domain = it.domain;
     MovingMesh moving(domain, first_mesh(it, nullptr), 0);  // throws if they do not fit
-    EXPECT_EQ(refusal(std::string(case_text) + "[flow]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n"),
-              "case.toml: domain.mesh (line 2): has a boundary that is not in the faces of its box; [flow] knows none but those");
 }
 
 TEST_F(CaseMeshTest, SizesAreTheMeshesOwnUnlessGiven) {
@@ -135,6 +133,26 @@ TEST_F(CaseMeshTest, RefusesInOneLine) {
               "case.toml: body[1].region (line 12): is that of body[0] already");
     EXPECT_EQ(refusal(replaced("region = \"the rotor, hot\"", "region = 0")).substr(0, 74),
               "case.toml: domain.mesh (line 2): a.msh: body \"rotor\": region 1 reaches the");
+}
+
+TEST_F(CaseMeshTest, FacesMayBeCalledByTheNamesOfPatches) {
+    const auto with = [](const std::string& heat_face) {
+        std::string text(case_text);
+        for (const char* region : {"surroundings", "rotor"})
+            text += fmt::format("[heat.region.{}]\nconductivity = 1\ndensity = 1\nspecific_heat = 1\ninitial = 300\n", region);
+        return text + "[heat.face]\n" + heat_face;
+    };
+    const std::string by_key = to_toml(read(with("x_min = { value = 400 }\n")));
+    EXPECT_EQ(to_toml(read(with("inlet = { value = 400 }\n"))), by_key);
+    EXPECT_EQ(refusal(with("inlet = { valu = 400 }\n")),
+              "case.toml: heat.face.x_min.valu (line 23): unknown key; did you mean \"value\"?");
+    EXPECT_EQ(refusal(with("skin = { value = 400 }\n")),
+              "case.toml: heat.face.skin (line 23): is a patch that is no face of the box as a whole; conditions are known at those "
+              "only: x_min, x_max, y_min, y_max, z_min, z_max");
+    EXPECT_EQ(refusal(with("x_min = \"insulated\"\ninlet = { value = 400 }\n")),
+              "case.toml: heat.face.inlet (line 24): is x_min, which stands there too");
+    EXPECT_EQ(refusal(with("inlett = { value = 400 }\n")).substr(0, 57),
+              "case.toml: heat.face.inlett (line 23): unknown key; known");
 }
 
 TEST_F(CaseMeshTest, PrismsAndOverlapsAreRefused) {
