@@ -71,6 +71,16 @@ RUNS = {
                           {"max_aspect_ratio": (4.8, 5.5), "min_dihedral [deg]": (20, 40),
                            "volume_bubble [m^3]": (6.0318e-8, 6.0319e-8)}),
 }
+# In meshes that are brought, likewise: where the body is, its volume as it was read, how good the mesh is.
+RUNS |= {
+    "shifting_ball": ShortRun(["time.end=0.1", "time.steps=4"],
+                               {"max_aspect_ratio": (5, 6.8), "x_ball [m]": (0.1469463, 0.1469464),
+                                "volume_ball [m^3]": (0.249992696073, 0.249992696074), "energy_error [J]": (-1e-9, 1e-9)}),
+    "turning_cube": ShortRun(["time.end=0.25", "time.steps=5"],
+                              {"max_aspect_ratio": (4, 5.7), "z_rotor [m]": (1.875 - 1e-12, 1.875 + 1e-12),
+                               "volume_rotor [m^3]": (0.125 - 1e-13, 0.125 + 1e-13), "energy_error [J]": (-1e-9, 1e-9),
+                               "temperature_mean_rotor [K]": (382, 383)}),
+}
 CONSERVED = 1e-12  # [-] energy and volumes over the whole run, and each transfer: rounding
 
 

@@ -108,7 +108,7 @@ void MeshStep::find_uneven() {
     is_uneven_.assign(domain_.bodies.size(), 0);
     std::vector<std::size_t> rigid;
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
-        if (!domain_.bodies[body].deformation && !domain_.bodies[body].layer) rigid.push_back(body);
+        if (const Body& it = domain_.bodies[body]; !it.deformation && !it.layer && !it.shape.surface) rigid.push_back(body);
     const Snapshot at = snapshot_at(time_);
     for (const BodySurface& surface : body_surfaces(reference_, rigid)) {
         const double short_edge = clearly * surface_size(at, surface.body);

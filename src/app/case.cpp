@@ -5,10 +5,13 @@
 #include "app/case_contact.h"
 #include "app/case_flow.h"
 #include "app/case_heat.h"
+#include "app/case_mesh.h"
 #include "app/case_species.h"
 #include "app/case_parameters.h"
+#include "app/case_patches.h"
 #include "app/case_setting.h"
 #include "app/case_table.h"
+#include "app/mesh_size.h"
 #include <kropla/base/error.h>
 #include <kropla/domain/words.h>
 #include "io/file.h"
@@ -27,7 +30,7 @@ constexpr double least_weight = 0.001;  // [-] of the larger of the paper's two;
 constexpr double least_floor = 5;  // [-] R/r; what is better is good enough for AdaptOptions, and left alone
 
 Box read_box(const CaseTable& table) {
-    table.allow({"min", "max"});
+    table.allow({"min", "max", "mesh"});
     const Box box{table.place("min"), table.place("max")};
     for (int axis = 0; axis < 3; ++axis) {
         if (box.min[axis] < box.max[axis]) continue;
@@ -48,12 +51,14 @@ void check_resolved(const CaseTable& table, const char* key, double size, const 
                                               least_resolved * farthest, farthest));
 }
 
-SizeField read_size(const CaseTable& table, const Box& box) {
+/// With `own`, the size that a mesh has already, whatever is left out is of that.
+SizeField read_size(const CaseTable& table, const Box& box, const std::optional<SizeField>& own) {
     table.allow({"surface", "growth", "far", "least"});
-    SizeField size;
-    size.surface = table.length("surface");
-    check_resolved(table, "surface", size.surface, box);
-    size.far = table.length("far");
+    SizeField size = own.value_or(SizeField{});
+    if (!own || table.has("surface")) size.surface = table.length("surface");
+    if (!own || table.has("surface")) check_resolved(table, "surface", size.surface, box);
+    if (!own || table.has("far")) size.far = table.length("far");
+    else size.far = std::max(size.far, size.surface);
     if (table.has("growth")) size.growth = table.number("growth");
     if (!(size.growth >= 0 && size.growth <= 1)) table.refuse_value("growth", "must be from 0 to 1");
     if (size.far < size.surface) {
@@ -74,6 +79,24 @@ void check_body_sizes(const CaseTable& file, const Domain& domain) {
         if (*size > domain.size.far) tables[body].refuse_value("size", fmt::format("must be at most size.far = {}", domain.size.far));
         check_resolved(tables[body], "size", *size, domain.box);
     }
+}
+
+/// The box, or a mesh that brings its own; the bodies; and the target size.
+void read_domain(const CaseTable& file, const std::string& name, Case& it) {
+    const CaseTable table = file.table("domain");
+    std::optional<SizeField> own;
+    if (table.has("mesh")) {
+        table.allow({"min", "max", "mesh"});
+        const CaseMesh mesh = read_case_mesh(table, name);
+        take_case_mesh(table, mesh, read_region_bodies(file, mesh, it), it);
+        own = size_of_mesh(*it.mesh->mesh, it.domain);
+    } else {
+        it.domain.box = read_box(table);
+        read_bodies(file, it);
+    }
+    if (own && !file.has("size")) it.domain.size = *own;
+    else it.domain.size = read_size(file.table("size"), it.domain.box, own);
+    check_body_sizes(file, it.domain);
 }
 
 /// The weights of the paper's Laplacian; only their ratio counts.
@@ -154,10 +177,8 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     file.allow({"parameters", "domain", "body", "size", "quality", "time", "heat", "species", "flow", "contact", "output", "random"});
     if (file.has("parameters")) read_parameters(file.table("parameters"), reading);
     Case it;
-    it.domain.box = read_box(file.table("domain"));
-    read_bodies(file, it);
-    it.domain.size = read_size(file.table("size"), it.domain.box);
-    check_body_sizes(file, it.domain);
+    read_domain(file, name, it);
+    name_faces(file, it, table);
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);

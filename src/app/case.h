@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,7 +55,8 @@ using WrittenKeys = std::vector<std::pair<std::string, std::string>>;
 
 /// How the user put what the structs of a case hold in another form, each as a TOML value. Empty: not given.
 struct WrittenBody {
-    std::string shape;  // "sphere", "ellipsoid" or "surface", without quotes
+    std::string shape;  // "sphere", "ellipsoid", "surface" or "region", without quotes
+    std::string region = {};  // of the mesh that the case brings, as TOML
     std::string rotation;
     WrittenKeys surface;                // of a surface: where it comes from
     std::array<std::string, 3> motion;  // all empty: at rest, or not by a path
@@ -78,6 +80,14 @@ struct WrittenSpecies {
     WrittenKeys faces;
 };
 
+/// A mesh from elsewhere, in place of one that is made.
+struct BroughtMesh {
+    std::string file;                  // absolute
+    std::shared_ptr<const Mesh> mesh;  // region i + 1 is body i, as in the domain; not improved yet
+    std::vector<std::string> notes;    // what was mended when it was read
+    std::map<std::string, Patch> faces = {};  // of named patches that are a face of the box; of others, none
+};
+
 /// What flows, and how it begins.
 struct FlowPlan {
     FlowOptions options;
@@ -87,6 +97,7 @@ struct FlowPlan {
 /// All that a run is told, SI units.
 struct Case {
     Domain domain;
+    std::optional<BroughtMesh> mesh;  // nothing: it is made for the domain
     QualityPlan quality;
     TimePlan time;
     std::optional<HeatOptions> heat;  // nothing: the mesh moves, nothing is simulated

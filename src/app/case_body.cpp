@@ -231,31 +231,64 @@ LayerOptions read_layer(const CaseTable& table) {
 
 }  // namespace
 
+namespace {
+
+void read_motion(const CaseTable& table, Case& it, Body& body, WrittenBody& written) {
+    it.free.emplace_back();
+    if (!table.has("motion")) return;
+    const CaseTable motion = table.table("motion");
+    const std::string kind = motion.has("kind") ? motion.text("kind") : "path";
+    if (kind == "free") it.free.back() = read_free(motion, written.free);
+    else if (kind == "path") body.motion = read_path(motion, written);
+    else if (kind == "field")
+        body.deformation = read_field(motion, fmt::format("body[{}]", it.domain.bodies.size()), written);
+    else motion.refuse_value("kind", "must be \"path\", \"field\" or \"free\"");
+}
+
+void take_body(Case& it, Body body, WrittenBody written) {
+    it.domain.bodies.push_back(std::move(body));
+    it.written_bodies.push_back(std::move(written));
+}
+
+}  // namespace
+
 void read_bodies(const CaseTable& file, Case& it) {
     for (const CaseTable& table : file.tables("body")) {
+        if (table.has("shape") && table.holds_text("shape") && table.text("shape") == "region")
+            table.refuse("shape", "\"region\" is one of a mesh that domain.mesh names; there is none");
         table.allow({"name", "shape", "centre", "radius", "axes", "file", "scale", "rotation", "size", "motion", "layer"});
         WrittenBody written;
         Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
         if (table.has("size")) body.size = table.length("size");
-        it.free.emplace_back();
-        if (table.has("motion")) {
-            const CaseTable motion = table.table("motion");
-            const std::string kind = motion.has("kind") ? motion.text("kind") : "path";
-            if (kind == "free") it.free.back() = read_free(motion, written.free);
-            else if (kind == "path") body.motion = read_path(motion, written);
-            else if (kind == "field")
-                body.deformation = read_field(motion, fmt::format("body[{}]", it.domain.bodies.size()), written);
-            else motion.refuse_value("kind", "must be \"path\", \"field\" or \"free\"");
-        }
+        read_motion(table, it, body, written);
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
         if (body.layer && body.deformation)
             table.refuse("layer", "stands on bodies that move rigidly; this one deforms (motion.kind = \"field\")");
-        it.domain.bodies.push_back(std::move(body));
-        it.written_bodies.push_back(std::move(written));
+        take_body(it, std::move(body), std::move(written));
     }
     const auto tables = file.tables("body");
     for (std::size_t body = 0; body < tables.size(); ++body)
         if (it.domain.bodies[body].layer) check_heights(tables[body].table("layer"), it.domain, body);
+}
+
+std::vector<int> read_region_bodies(const CaseTable& file, const CaseMesh& mesh, Case& it) {
+    std::vector<int> regions;
+    for (const CaseTable& table : file.tables("body")) {
+        if (table.text("shape") != "region")
+            table.refuse_value("shape", "must be \"region\" where domain.mesh brings the mesh");
+        table.allow({"name", "shape", "region", "motion"});
+        WrittenBody written;
+        written.shape = "region";
+        Body body{read_name(table, it.domain.bodies), {}};
+        const int region = read_region(table, mesh);
+        if (const auto same = std::ranges::find(regions, region); same != regions.end())
+            table.refuse("region", fmt::format("is that of body[{}] already", same - regions.begin()));
+        written.region = table.holds_text("region") ? toml_text(table.text("region")) : std::to_string(region);
+        read_motion(table, it, body, written);
+        take_body(it, std::move(body), std::move(written));
+        regions.push_back(region);
+    }
+    return regions;
 }
 
 }  // namespace kropla

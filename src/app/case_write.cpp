@@ -37,9 +37,11 @@ std::string body(const Case& it, std::size_t number) {
     const Body& body = it.domain.bodies[number];
     const WrittenBody& written = it.written_bodies[number];
     const std::string table = fmt::format("body[{}]", number);
-    std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\n", toml_text(body.name), written.shape) +
-                       line(it, table, "centre", vec3(body.shape.centre));
-    if (written.shape == "sphere") {
+    std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\n", toml_text(body.name), written.shape);
+    if (written.shape != "region") text += line(it, table, "centre", vec3(body.shape.centre));
+    if (written.shape == "region") {
+        text += fmt::format("region = {}\n", written.region);
+    } else if (written.shape == "sphere") {
         text += line(it, table, "radius", body.shape.semi_axes.x);
     } else {
         if (written.shape == "ellipsoid") text += line(it, table, "axes", vec3(body.shape.semi_axes));
@@ -127,8 +129,11 @@ std::string parameters(const Case& it) {
 std::string to_toml(const Case& it) {
     std::string text = "# The case as run, defaults filled in. Lengths in metres, times in seconds.\n";
     text += parameters(it);
-    text += "\n[domain]\n" + line(it, "domain", "min", vec3(it.domain.box.min)) +
-            line(it, "domain", "max", vec3(it.domain.box.max));
+    if (it.mesh)
+        text += fmt::format("\n[domain]\nmesh = {}\n", toml_text(it.mesh->file));
+    else
+        text += "\n[domain]\n" + line(it, "domain", "min", vec3(it.domain.box.min)) +
+                line(it, "domain", "max", vec3(it.domain.box.max));
     for (std::size_t b = 0; b < it.domain.bodies.size(); ++b) text += body(it, b);
     const SizeField& size = it.domain.size;
     text += "\n[size]\n" + line(it, "size", "surface", size.surface) + line(it, "size", "growth", size.growth) +

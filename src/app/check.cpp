@@ -5,6 +5,7 @@
 #include "app/shell_jump.h"
 #include <kropla/base/error.h>
 #include "base/tetrahedron.h"
+#include <kropla/io/mesh_file.h>
 #include <kropla/io/vtk.h>
 #include <kropla/mesh/prisms.h>
 #include <kropla/mesh/quality.h>
@@ -193,7 +194,7 @@ std::string note_of(const FileCells& cells) {
 }  // namespace
 
 CheckReport check_file(const std::filesystem::path& path) {
-    FileCells cells = read_vtu_cells(path);
+    FileCells cells = read_mesh_file(path);
     const std::size_t vertices = cells.position.size(), tets = cells.tets.size(), prisms = cells.prisms.size();
     const std::string note = note_of(cells);
     Mesh mesh;

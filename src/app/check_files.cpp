@@ -3,6 +3,7 @@
 #include "app/fault.h"
 #include <kropla/base/error.h>
 #include <kropla/io/pvd.h>
+#include <kropla/io/mesh_file.h>
 #include <kropla/io/vtk.h>
 #include <kropla/mesh/prisms.h>
 #include <kropla/mesh/quality.h>
@@ -49,7 +50,7 @@ std::vector<std::filesystem::path> files_to_check(std::span<const std::filesyste
 CheckLine check_line(const std::filesystem::path& path) {
     FileCells cells;
     try {
-        cells = read_vtu_cells(path);
+        cells = read_mesh_file(path);
     } catch (const FileError& error) {  // it names the file
         return {false, fmt::format("{}\n", error.what())};
     }

@@ -3,16 +3,20 @@
 
 #include "app/body_sizes.h"
 #include "app/check.h"
+#include "app/case_heat.h"
 #include "app/check_files.h"
 #include "app/command_line.h"
+#include "app/first_mesh.h"
 #include "app/foresight.h"
 #include "app/interrupt.h"
+#include "app/mesh_commands.h"
 #include "app/new_case.h"
 #include "app/progress.h"
 #include "app/run.h"
 #include "app/step.h"
 #include "app/sweep.h"
 #include <kropla/base/error.h>
+#include <kropla/io/mesh_file.h>
 #include <kropla/io/vtk.h>
 #include <kropla/mesh/quality.h>
 #include "report/page.h"
@@ -41,6 +45,16 @@ struct MeshOptions {
     std::vector<std::string> settings;
 };
 
+/// In VTU with the quality of its cells; in other formats with the names of bodies and faces.
+void write_initial(const Case& it, const Mesh& mesh, const std::filesystem::path& out, const Watch* watch) {
+    if (out.extension() == ".vtu") return write_vtu(out, mesh, {}, watch);
+    Names regions = {{surroundings.value, "surroundings"}}, patches;
+    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body)
+        regions[region_of_body(body).value] = it.domain.bodies[body].name;
+    for (int face = 0; face < box_faces; ++face) patches[face + 1] = face_keys[as_size(face)];
+    write_mesh_file(out, cells_of(mesh, std::move(regions), std::move(patches)), watch);
+}
+
 /// The initial mesh, written.
 Mesh written_mesh_of(const Case& it, const std::filesystem::path& out, Watch& watch) {
     Progress progress;
@@ -48,8 +62,8 @@ Mesh written_mesh_of(const Case& it, const std::filesystem::path& out, Watch& wa
         watch.progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
     try {
         warn(foresee(it, &watch));
-        Mesh mesh = initial_mesh(it.domain, adapt_options(it, &watch));
-        write_vtu(out, mesh, {}, &watch);
+        Mesh mesh = first_mesh(it, &watch);
+        write_initial(it, mesh, out, &watch);
         return mesh;
     } catch (const Interrupted&) {
         throw Interrupted("interrupted while the initial mesh was made; nothing was written");
@@ -57,10 +71,9 @@ Mesh written_mesh_of(const Case& it, const std::filesystem::path& out, Watch& wa
 }
 
 int write_initial_mesh(const MeshOptions& options) {
-    if (options.out.extension() != ".vtu") {
-        throw CaseError(fmt::format("{}: the mesh is written as VTU; name a file that ends in .vtu",
-                                    options.out.string()));
-    }
+    if (!is_mesh_file(options.out))
+        throw CaseError(fmt::format("{}: is of no format that is known; name a file that ends in {}",
+                                    options.out.string(), mesh_extensions));
     Watch watch;
     const CatchInterrupts catching(watch);
     const Case it = read_case(options.case_file, options.settings);
@@ -132,6 +145,7 @@ int start_case(const std::string& name) {
 struct Request {
     RunOptions run;
     MeshOptions mesh;
+    MeshFiles convert, improve;
     SweepOptions sweep;
     std::filesystem::path file;  // or folder
     std::vector<std::filesystem::path> files;  // or folders
@@ -197,17 +211,35 @@ void describe_sweep(CLI::App& app, SweepOptions& options) {
         "Exit code: the largest of the runs' codes; 130 interrupted");
 }
 
+void describe_conversions(CLI::App& app, Request& request) {
+    CLI::App* convert = app.add_subcommand("convert", "Writes a mesh in another format, its regions and patches kept");
+    convert->add_option("IN", request.convert.in, "the mesh to read")->required();
+    convert->add_option("OUT", request.convert.out, "the mesh to write")->required();
+    convert->footer(
+        "Formats go by the names: .vtu (VTK), .msh (Gmsh; 2.2 and 4.1 are read, 4.1 is written), .mesh (Medit):\n"
+        "  kropla convert tank.msh tank.vtu");
+
+    CLI::App* improve = app.add_subcommand("improve", "Makes the tets of a mesh better, its boundary and interfaces kept");
+    improve->add_option("IN", request.improve.in, "the mesh to read")->required();
+    improve->add_option("-o,--output", request.improve.out, "the mesh to write")->required()->type_name("OUT");
+    describe_threads(*improve, request.improve.threads);
+    improve->footer(
+        "Formats as of kropla convert:\n"
+        "  kropla improve tank.msh -o better.msh\n"
+        "Vertices on boundary and interfaces stay, and so do prisms. A table tells how good the mesh was and is.");
+}
+
 void describe_others(CLI::App& app, Request& request) {
     CLI::App* mesh = app.add_subcommand("mesh", "Writes the initial mesh of a case, and nothing more");
     mesh->add_option("CASE", request.mesh.case_file, "the case file")->required();
-    mesh->add_option("-o,--output", request.mesh.out, "the VTU file to write")->required()->type_name("FILE");
+    mesh->add_option("-o,--output", request.mesh.out, "the file to write: .vtu, .msh or .mesh")->required()->type_name("FILE");
     describe_settings(*mesh, request.mesh.settings);
     mesh->footer("Example: kropla mesh droplet.toml -o droplet.vtu");
 
     CLI::App* check = app.add_subcommand("check", "Tells whether meshes are valid, and how good they are");
-    check->add_option("FILE", request.files, "VTU files, a PVD file, or the folder of a run")->required();
+    check->add_option("FILE", request.files, "mesh files (.vtu, .msh, .mesh), a PVD file, or the folder of a run")->required();
     check->footer(
-        "Of one VTU file all is told, of several a line each:\n"
+        "Of one file all is told, of several a line each:\n"
         "  kropla check droplet/frames/00010.vtu\n"
         "  kropla check droplet\n"
         "Cells of surfaces, lines and points are passed over.\n"
@@ -230,6 +262,7 @@ void describe(CLI::App& app, Request& request) {
     describe_run(app, request.run);
     describe_sweep(app, request.sweep);
     describe_others(app, request);
+    describe_conversions(app, request);
     app.footer(
         "Example:\n"
         "  kropla new droplet\n"
@@ -244,6 +277,8 @@ int dispatch(const CLI::App& app, const Request& request) {
     if (app.got_subcommand("run")) return run(request.run);
     if (app.got_subcommand("sweep")) return sweep(request.sweep);
     if (app.got_subcommand("mesh")) return write_initial_mesh(request.mesh);
+    if (app.got_subcommand("convert")) return convert_mesh(request.convert);
+    if (app.got_subcommand("improve")) return improve_mesh_file(request.improve);
     if (app.got_subcommand("check")) return check_meshes(request.files);
     if (app.got_subcommand("report")) return report_run(request.file);
     return start_case(request.name);

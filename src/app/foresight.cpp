@@ -155,7 +155,8 @@ struct Allowed {
 };
 Allowed look_at_all(const Case& it, const Watch* watch) {
     const double sure = doubtful_gap(it.quality.max_aspect_ratio), least = hopeless_share * sure;
-    Allowed all{surface_limit(it.domain, 0, least_gap_in_sizes), look(it, watch)};
+    const SizeLimit none{std::numeric_limits<double>::infinity(), {}};  // what is meshed already fits at the start
+    Allowed all{it.mesh ? none : surface_limit(it.domain, 0, least_gap_in_sizes), look(it, watch)};
     for (const Approach& gap : all.seen.closest) {
         if (size_for_gap(it.domain, gap, least) >= finest(it.domain, gap)) continue;
         const SizeLimit on_way = limit_of(it.domain, gap, sure);  // what is advised shall really do
@@ -187,7 +188,7 @@ void check_sizes(const Case& it, SizeLimit limit, const Watch* watch) {
     const bool is_fine = asked.surface <= limit.most;
     Case fitting = it;
     if (!is_fine) fitting.domain.size.surface = rounded_down(limit.most);
-    const double tets = estimate_tets(fitting.domain);
+    const double tets = it.mesh ? count_tets(*it.mesh->mesh) : estimate_tets(fitting.domain);
     if (tets <= most_tets) {
         if (is_fine) return;
         throw DomainError(too_coarse(limit, asked.surface) + unit_hint(it.domain));
@@ -298,7 +299,8 @@ std::vector<std::string> foresee(const Case& it, const Watch* watch) {
     }
     check_sizes(it, all.limit, watch);
     check_start(it);
-    if (const std::string thin = thin_box(domain); !thin.empty()) warnings.push_back(thin);
+    if (it.mesh) warnings.insert(warnings.end(), it.mesh->notes.begin(), it.mesh->notes.end());
+    else if (const std::string thin = thin_box(domain); !thin.empty()) warnings.push_back(thin);
     if (domain.size.growth > steepest_growth)
         warnings.push_back(fmt::format("size.growth = {} counts as {}: steeper sizes leave cells above the limit",
                                        domain.size.growth, steepest_growth));

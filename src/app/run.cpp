@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/ending.h"
 #include "app/flow_fields.h"
+#include "app/first_mesh.h"
 #include "app/foresight.h"
 #include "app/interrupt.h"
 #include "app/run_folder.h"
@@ -43,7 +44,7 @@ constexpr double same_time = 1e-9;         // of the wanted dt: what is left of 
 
 State start(const Case& it, const Ranks& ranks) {
     const Watch* watch = ranks.watch;
-    Mesh mesh = initial_mesh(it.domain, adapt_options(it, watch));
+    Mesh mesh = first_mesh(it, watch);
     std::vector<NodalField> fields;
     if (it.heat) {
         check_heat(*it.heat, mesh);

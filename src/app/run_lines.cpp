@@ -84,7 +84,7 @@ std::string spoken_estimate(double count) { return spoken_count(std::stod(fmt::f
 
 std::string opening_line(const RunOptions& options, const Case& it) {
     return fmt::format("{}: about {} tets, {} to {}, {}", options.case_file.string(),
-                       spoken_estimate(estimate_tets(it.domain)), counted(it.time.steps, "step"),
+                       spoken_estimate(it.mesh ? count_tets(*it.mesh->mesh) : estimate_tets(it.domain)), counted(it.time.steps, "step"),
                        spoken_time(it.time.end), counted(threads(), "thread"));
 }
 

@@ -26,7 +26,11 @@ std::string plain_formula(std::string text) {
     return error == std::errc() && stop == end ? fmt::format("{}", number) : text;
 }
 
-bool is_name(std::string_view key) { return key.ends_with(".name") || key.ends_with(".shape") || key.ends_with(".file"); }
+/// Is the value a name, rather than a formula?
+bool is_name(std::string_view key) {
+    return key.ends_with(".name") || key.ends_with(".shape") || key.ends_with(".file") || key.ends_with(".region") ||
+           key.ends_with(".mesh");
+}
 
 /// How a value is written, and which number that is: empty if it is none.
 struct Value {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kropla/base/watch.h>
+#include <kropla/io/file_cells.h>
 #include <kropla/io/stacks.h>
 #include <kropla/simulate/fields.h>
 
@@ -23,21 +24,16 @@ namespace kropla {
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {},
                const Watch* watch = nullptr, std::span<const NodalVectorField> vectors = {});
 
-/// What a VTU file says, before neighbours are known: cells as they stand, right or wrong.
-struct FileCells {
-    Array<Vertex, Vec3> position;            // [m]
-    Array<Tet, std::array<Vertex, 4>> tets;  // vertices exist; orientation and conformity are not looked at
-    Array<Tet, Region> region;               // 0 where the file has no cell array "region"
-    std::vector<LoosePrism> prisms;          // vertices exist
-    std::vector<NodalField> fields;          // point arrays of one component
-    std::vector<NodalVectorField> vectors = {};  // of three
-    std::size_t passed_over = 0;             // cells of surfaces, lines and points, as mesh generators add them
-};
+/// Writes cells, facets of patches as cells of their own, and names, as VTU. Cell arrays: `region` and `layer` as above, and
+/// `patch` of facets; where a cell has none, -1. Names are arrays of texts of the whole file, "3 rotor": `region_names`
+/// and `patch_names`.
+void write_vtu(const std::filesystem::path& path, const FileCells& cells, const Watch* watch = nullptr);
 
 /// Throws FileError, in one line, if the file is missing, unreadable, not VTU, truncated or damaged, or has
-/// no tets, cells of volume that are neither linear tets nor prisms, prisms without a cell array "layer", cells of vertices
-/// that do not exist, or coordinates that are not finite. Tets are numbered in the order of the file, by themselves.
-[[nodiscard]] FileCells read_vtu_cells(const std::filesystem::path& path);
+/// no tets, cells of volume that are neither linear tets nor prisms, cells of vertices that do not exist, or coordinates
+/// that are not finite. Tets are numbered in the order of the file, by themselves. Triangles and quads are facets if
+/// there is a cell array "patch", else they are passed over.
+[[nodiscard]] FileCells read_vtu_cells(const std::filesystem::path& path, const Watch* watch = nullptr);
 
 struct Frame {
     Mesh mesh;
@@ -45,10 +41,9 @@ struct Frame {
     std::vector<NodalVectorField> vectors = {};
 };
 
-/// The mesh of these cells. A VTU file does not know patches: boundary facets get that of the face of the
-/// bounding box in which they lie, exactly by coordinates, or of the layer whose wall or shell they are, else
-/// patch 0. The cells are not checked: see `verify`. Throws std::invalid_argument as make_mesh, FileError
-/// as attach_layers, naming the cell but not the file.
+/// The mesh of these cells. Boundary facets get the patch of the face of the bounding box in which they lie, exactly by
+/// coordinates, or of the layer whose wall or shell they are, else patch 0. Prisms of no layer get one (number_layers). The cells are not checked: see `verify`. Throws FileError as
+/// make_mesh, number_layers and attach_layers, naming the cell but not the file.
 [[nodiscard]] Frame make_frame(FileCells cells);
 
 /// Both in one; all errors name the file. Throws Interrupted if the watch says so.

@@ -72,6 +72,17 @@ FaceFacets facets_of_faces(const Mesh& mesh, const Cells& cells) {
     return facets;
 }
 
+std::vector<std::array<Vertex, 3>> facets_of_fixed_walls(const Mesh& mesh, const Cells& cells) {
+    std::vector<std::array<Vertex, 3>> facets;
+    for (Tet t : cells.tets)
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Patch patch = mesh.patch[t][corner];
+            if (mesh.neighbour[t][corner].exists() || patch.value < box_faces || layer_beyond(mesh, patch).exists()) continue;
+            facets.push_back(facet_of(mesh, t, corner));
+        }
+    return facets;
+}
+
 RegionSurface region_surface(const Mesh& mesh, Region region) {
     RegionSurface surface;
     for (Tet t : living_cells(mesh, region).tets) {

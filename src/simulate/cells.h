@@ -64,6 +64,8 @@ struct RegionSurface {
 /// The facets of cells on each face of the box, with their normal (right hand) out of it.
 using FaceFacets = std::array<std::vector<std::array<Vertex, 3>>, 6>;
 [[nodiscard]] FaceFacets facets_of_faces(const Mesh& mesh, const Cells& cells);
+/// Those of the boundary that are on no face of the box: fixed walls.
+[[nodiscard]] std::vector<std::array<Vertex, 3>> facets_of_fixed_walls(const Mesh& mesh, const Cells& cells);
 
 /// The integral of the normal over a facet [m^2].
 [[nodiscard]] inline Vec3 area_vector(const Mesh& mesh, const std::array<Vertex, 3>& facet) {

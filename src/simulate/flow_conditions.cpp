@@ -157,7 +157,9 @@ Cells flow_cells(const Mesh& mesh, const FlowOptions& options) {
 
 FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t) {
     FlowBoundary boundary;
-    boundary.faces = facets_of_faces(mesh, flow_cells(mesh, options));
+    const Cells cells = flow_cells(mesh, options);
+    boundary.faces = facets_of_faces(mesh, cells);
+    boundary.fixed_walls = vertices_of(facets_of_fixed_walls(mesh, cells));
     for (std::size_t r = 1; r < options.regions.size(); ++r) {
         const Region body(r);
         if (is_fluid(options, body)) continue;
@@ -188,10 +190,11 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
     for (std::size_t face = 6; face-- > 0;)
         if (options.faces[face].kind == FlowFace::Kind::velocity)
             fix_face(step, face, vertices[face], conditions);
+    const auto at_rest = [](const Vec3&, double) { return Vec3{}; };
     for (std::size_t face = 0; face < 6; ++face)
         if (options.faces[face].kind == FlowFace::Kind::wall)
-            for (Vertex v : vertices[face])
-                fix(step, v, [](const Vec3&, double) { return Vec3{}; }, "", conditions);
+            for (Vertex v : vertices[face]) fix(step, v, at_rest, "", conditions);
+    for (Vertex v : boundary.fixed_walls) fix(step, v, at_rest, "", conditions);
     for (const SolidSurface& solid : boundary.solids) fix_solid(step, solid, conditions);
     if (conditions.closed) check_way_out(step, boundary, conditions);
     return conditions;

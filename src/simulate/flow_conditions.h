@@ -21,6 +21,7 @@ struct SolidSurface {
 struct FlowBoundary {
     std::array<std::vector<std::array<Vertex, 3>>, 6> faces;  // normals out of the box
     std::vector<SolidSurface> solids;
+    std::vector<Vertex> fixed_walls;  // that are no faces of the box: no slip; ascending
 };
 
 /// What is given in a step. The same on all ranks.

@@ -411,6 +411,7 @@ private:
                 for (Vertex v : facet) faces[v] |= 1u << face;
         for (const SolidSurface& solid : boundary_.solids)
             for (Vertex v : solid.vertices) faces[v] = 0;
+        for (Vertex v : boundary_.fixed_walls) faces[v] = 0;
         std::array<Vec3, 6> forces = {};
         for (int m = 0; m < 3; ++m) {
             const unsigned across = 3u << (2 * m);

@@ -32,7 +32,8 @@ TEST(Arguments, ArePartedIntoThoseOfTheSolverAndTheRest) {
 TEST(Program, HelpsAndTellsItsVersion) {
     const TemporaryFolder folder;
     for (const char* arguments :
-         {"--help", "run --help", "sweep --help", "mesh --help", "check --help", "report --help", "new --help"}) {
+         {"--help", "run --help", "sweep --help", "mesh --help", "check --help", "report --help", "new --help",
+          "convert --help", "improve --help"}) {
         SCOPED_TRACE(arguments);
         const Outcome it = kropla_program(folder, arguments);
         EXPECT_EQ(it.code, 0);
@@ -66,7 +67,7 @@ TEST(Program, BadCasesEndWithTwo) {
     expect_complaint(kropla_program(folder, "mesh negative.toml -o m.vtu"), 2,
                      "negative.toml: body[0].radius (line 8): must be positive, got -0.001");
     expect_complaint(kropla_program(folder, "mesh negative.toml -o m.stl"), 2,
-                     "m.stl: the mesh is written as VTU; name a file that ends in .vtu");
+                     "m.stl: is of no format that is known; name a file that ends in .vtu (VTK), .msh (Gmsh) or .mesh (Medit)");
     EXPECT_FALSE(std::filesystem::exists(folder.path / "d"));
 }
 
@@ -122,7 +123,7 @@ TEST(Program, SaysWhatWasPerhapsMeant) {
     write(folder.path / "a.toml", std::string(starting_case()));
     expect_complaint(kropla_program(folder, "rum a.toml --out d"), 2, "rum: unknown command; did you mean \"run\"?");
     expect_complaint(kropla_program(folder, "foo"), 2,
-                     "foo: unknown command; known here: run, sweep, mesh, check, report, new");
+                     "foo: unknown command; known here: run, sweep, mesh, check, report, new, convert, improve");
     expect_complaint(kropla_program(folder, "run a.toml --out d --theads 2"), 2,
                      "--theads: unknown option of kropla run; did you mean \"--threads\"?");
     expect_complaint(kropla_program(folder, "run a.toml --theads=2"), 2,

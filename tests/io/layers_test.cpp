@@ -211,8 +211,8 @@ TEST(LayersInFiles, WedgesOfOtherProgramsAreRefusedInOneLine) {
     const auto layer = [](const std::string& values) {
         return "<DataArray type=\"Int32\" Name=\"layer\" format=\"ascii\">" + values + "</DataArray>";
     };
-    EXPECT_EQ(refusal_of_wedge(""), "cell 1 is a prism, but there is no cell array layer to say of which layer");
-    EXPECT_EQ(refusal_of_wedge(layer("0 0")), "cell 1 is a prism of layer 0, not 1, 2, ... from the wall");
+    EXPECT_EQ(refusal_of_wedge(""), "cell 1, a prism, is in no stack that stands where two regions meet");
+    EXPECT_EQ(refusal_of_wedge(layer("0 0")), "cell 1, a prism, is in no stack that stands where two regions meet");
     EXPECT_EQ(refusal_of_wedge(layer("0 -1")), "cell 1 has the layer -1.000000, not 0, 1, 2, ...");
     EXPECT_EQ(refusal_of_wedge(layer("0 2")), "of 1 prisms only 0 stand in stacks on a wall");
     EXPECT_EQ(refusal_of_wedge(layer("0 1")), "prism layer 0 stands on no body's surface");

@@ -123,6 +123,25 @@ TEST(FlowExact, AnAcceleratingFrameHasALinearPressure) {
     EXPECT_GT(a / b, 3.5);
 }
 
+// A duct with walls across y and z, and the same as fixed walls of a mesh from elsewhere, which are no faces of a box.
+TEST(FlowExact, FixedWallsAreWalls) {
+    const Mesh box = unit_cube(4);
+    Mesh fixed = box;
+    for (auto& patches : fixed.patch)
+        for (Patch& patch : patches)
+            if (patch.value >= 2) patch = Patch(box_faces + patch.value % 3);
+    FlowOptions options = fluid(1, 1, {});
+    options.faces.fill({});
+    options.faces[0] = {.kind = FlowFace::Kind::velocity, .velocity = uniform({1, 0, 0})};
+    options.faces[1] = {.kind = FlowFace::Kind::open};
+    FlowState in_box = still_flow(box), in_fixed = in_box;
+    (void)step_flow(petsc().all_ranks(), box, box, options, in_box, 0, 0.1);
+    const FlowReport report = step_flow(petsc().all_ranks(), fixed, fixed, options, in_fixed, 0, 0.1);
+    EXPECT_EQ(in_fixed.velocity, in_box.velocity);
+    EXPECT_GT(report.face_flux[1], 0.5);
+    EXPECT_EQ(report.face_flux[2], 0);
+}
+
 TEST(FlowExact, WhatFlowsInNeedsAWayOut) {
     const Mesh mesh = unit_cube(4);
     FlowOptions options = fluid(1, 1, {});
