@@ -60,7 +60,7 @@ RUNS = {
     "two_settling": ShortRun(["body.upper.centre=[0.0006, 0, 0.0668]", "body.upper.motion.velocity=[0, 0, -0.05]",
                                "size.surface=1.4e-3", "size.growth=0.4", "size.far=0.01", "time.steps=1", "time.end=0.01"],
                               {"contacts": (1, 1), "gap_upper [m]": (5.53e-4, 5.54e-4)}),
-    "wheel": ShortRun(["size.surface=1.5e-4", "time.steps=4", "time.end=2e-3"], {"max_aspect_ratio": (3, 7.5)}),
+    "wheel": ShortRun(["size.surface=1.5e-4", "time.steps=4", "time.end=2e-3"], {"max_aspect_ratio": (3, 8.3)}),
     "arc_flight": ShortRun(["size.surface=2.2e-4", "size.growth=0.3", "size.far=1.5e-3", "time.steps=3", "time.end=3e-4"],
                             {"w_droplet [m/s]": (-0.437, -0.433), "temperature_mean_droplet [K]": (2402.3, 2402.8),
                              "temperature_max_droplet [K]": (2415, 2418)}),

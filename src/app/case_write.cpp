@@ -137,7 +137,8 @@ std::string to_toml(const Case& it) {
     for (std::size_t b = 0; b < it.domain.bodies.size(); ++b) text += body(it, b);
     const SizeField& size = it.domain.size;
     text += "\n[size]\n" + line(it, "size", "surface", size.surface) + line(it, "size", "growth", size.growth) +
-            line(it, "size", "far", size.far) + line(it, "size", "least", least_size(size));
+            line(it, "size", "far", size.far) +
+            (size.least ? line(it, "size", "least", *size.least) : "");
     text += quality(it);
     text += "\n[time]\n" + line(it, "time", "end", it.time.end) + line(it, "time", "steps", it.time.steps);
     if (it.time.courant) text += line(it, "time", "courant", *it.time.courant);

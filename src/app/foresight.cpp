@@ -27,10 +27,10 @@ double largest_extent(const Box& box) {
     return std::max({span.x, span.y, span.z});
 }
 
-/// How short edges may become in the gap [m]: where a body has a layer they stay as they are.
+/// How short edges may become in the gap [m]: where a body has a layer they stay as they are, and so they are at the start.
 double finest(const Domain& domain, const Approach& gap) {
     const bool layered = domain.bodies[gap.body].layer || (gap.wall < 0 && domain.bodies[gap.other].layer);
-    return layered ? domain.size.surface : least_size(domain.size);
+    return layered || gap.time == 0 ? domain.size.surface : least_size(domain.size);
 }
 
 /// The surface sizes that one gap has room for if that many are to fit.

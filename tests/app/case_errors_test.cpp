@@ -25,7 +25,7 @@ TEST(CaseErrors, UnknownKeysComeWithASuggestion) {
         {"centre =", "center =", "body[0].center (line 7): unknown key; did you mean \"centre\"?"},
         {"[size]", "[sizes]", "sizes (line 19): unknown key; did you mean \"size\"?"},
         {"growth = 0.15", "slope = 0.15",
-         "size.slope (line 21): unknown key; known here: surface, growth, far"},
+         "size.slope (line 21): unknown key; known here: surface, growth, far, least"},
         {"z = \"-1.0*t\"", "w = 1", "body[0].motion.w (line 12): unknown key; did you mean \"x\"?"},
         {"[heat.region.droplet]", "[heat.region.drop]",
          "heat.region.drop (line 33): unknown key; known here: surroundings, droplet, egg \"2\""},

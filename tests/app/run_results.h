@@ -31,10 +31,12 @@ inline std::string leaping_case() {
     return replaced(text, "far     = 8e-4", "far     = 1e-3");
 }
 
-/// A droplet that falls until 0.18 of an edge are left above the bottom: for the least of all floors too narrow.
+/// A droplet that falls until 0.18 of an edge are left above the bottom, where edges may not become shorter: for the least
+/// of all floors too narrow.
 inline std::string landing_case() {
     const std::string text = replaced(leaping_case(), "0.002,  0.002, 0.009", "0.002,  0.002, 0.004");
-    return replaced(replaced(text, "0.0072", "0.002"), "-5*t", "-0.838*t") + "[quality]\nmax_aspect_ratio = 5\n";
+    return replaced(replaced(replaced(text, "0.0072", "0.002"), "-5*t", "-0.838*t"), "surface = 6e-4",
+                    "surface = 6e-4\nleast = 6e-4") + "[quality]\nmax_aspect_ratio = 5\n";
 }
 
 /// The frames of a run's folder, by name.
