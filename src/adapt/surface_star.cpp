@@ -10,7 +10,7 @@
 namespace kropla {
 namespace {
 
-constexpr double sharp = 0.7;               // [-] cosine of the angle between normals, 45 degrees: more is an edge
+constexpr double sharp = 0.25;              // [-] cosine of the angle between normals, 75 degrees: more is an edge
 constexpr std::size_t unknowns = 6;         // of a quadric over a plane
 constexpr std::size_t least_points = 8;     // to fit it
 constexpr double least_pivot = 1e-6;        // [-] of the largest, scaled by the distances
