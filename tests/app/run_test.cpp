@@ -312,5 +312,22 @@ TEST(Run, EndsWithFiveIfTheDiskIsFull) {
     expect_same_run(folder.path / "d", folder.path / "whole");
 }
 
+// Twenty times nearer to the floor than a surface size: edges become shorter in the gap.
+TEST(Run, ABodyComesDownToAHairAboveTheFloor) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml",
+          "[domain]\nmin = [-0.0025, -0.0025, 0.0]\nmax = [0.0025, 0.0025, 0.006]\n"
+          "[[body]]\nname = \"drop\"\nshape = \"sphere\"\ncentre = [0, 0, 0.0013]\nradius = 0.001\n"
+          "[body.motion]\nz = \"-0.14*t\"\n[size]\nsurface = 0.0004\ngrowth = 0.2\nfar = 0.0008\n"
+          "[time]\nend = 0.002\nsteps = 3\n");
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    EXPECT_EQ(it.err, "");
+    const auto columns = lasting_columns(folder.path / "d");
+    for (const std::string& ratio : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(ratio), 6);
+    for (const std::string& volume : columns.at("volume_drop"))
+        EXPECT_NEAR(std::stod(volume), 4e-9 / 3 * std::numbers::pi, 1e-12 * 4.19e-9);
+}
+
 }  // namespace
 }  // namespace kropla
