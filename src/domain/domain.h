@@ -75,7 +75,7 @@ struct SizeField {
     std::optional<double> least = {};  // [m], at most surface; none: a twentieth of it
 };
 [[nodiscard]] inline double least_size(const SizeField& size) { return size.least.value_or(size.surface / 20); }
-/// Target size by width of a gap: one cell across, half as high again as a regular one is wide.
+/// Target size by width of a gap: one cell across, its edges along the gap half as long again as the gap is wide.
 inline constexpr double gap_share = 1.5;
 /// [surface sizes] wider gaps are left as they are: the engine finds cells for them, at smaller changes.
 inline constexpr double narrow_gap = 0.3;
