@@ -17,6 +17,7 @@ list(APPEND KROPLA_MESH_FILES
     adapt/move.cpp
     adapt/correction.cpp
     adapt/mesh_step.cpp
+    adapt/step_surfaces.cpp
     adapt/fits_domain.cpp
     adapt/moving_mesh.cpp
     adapt/attempt.cpp

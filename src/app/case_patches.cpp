@@ -14,11 +14,6 @@ namespace {
 
 using Triangle = std::array<Vertex, 3>;
 
-Triangle sorted(Triangle t) {
-    std::ranges::sort(t);
-    return t;
-}
-
 /// The patches of the file by the vertices of their triangles.
 std::map<Triangle, int> numbers_of_facets(const FileCells& cells) {
     std::map<Triangle, int> numbers;

@@ -168,6 +168,22 @@ bool has_narrow_gap(const Snapshot& at) {
     });
 }
 
+std::vector<char> are_in_gaps(const Snapshot& at) {
+    std::vector<char> in_gap(at.shapes.size(), 0);
+    std::vector<Bounds> held;
+    double widest = 0;
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        const double narrow = surface_size(at, body) / gap_share;
+        const Bounds& here = held.emplace_back(bounds(at.shapes[body]));
+        widest = std::max(widest, narrow);
+        for (int wall = 0; wall < box_faces; ++wall)
+            if (wall_gap(at.box, here, wall) < narrow) in_gap[body] = 1;
+        if (at.walls && gap_between(at.shapes[body], *at.walls) < narrow) in_gap[body] = 1;
+    }
+    for (const auto& [a, b] : pairs_within(held, widest)) in_gap[a] = in_gap[b] = 1;
+    return in_gap;
+}
+
 double gap_width(const Snapshot& at, const Vec3& x) {
     Surrounded by;
     for (std::size_t body = 0; body < at.shapes.size(); ++body) by.see(at, body, signed_distance(at.shapes[body], x));

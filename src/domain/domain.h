@@ -126,6 +126,8 @@ struct Snapshot {
 [[nodiscard]] double largest_size(const Box& box, const SizeField& size);
 /// Is a gap narrower than `narrow_gap`, of those that sizes may fall in?
 [[nodiscard]] bool has_narrow_gap(const Snapshot& at);
+/// Per body: may a gap at it ask for smaller triangles than it has? Told by the boxes that hold bodies.
+[[nodiscard]] std::vector<char> are_in_gaps(const Snapshot& at);
 /// The width of the gap at x [m]: from the nearest wall or surface of a body without a layer to the next nearest; within
 /// such a body, that at the point of its surface nearest to x. Infinite where there are no two, or within a layered body.
 [[nodiscard]] double gap_width(const Snapshot& at, const Vec3& x);

@@ -13,11 +13,6 @@ namespace {
 
 using Triangle = std::array<Vertex, 3>;
 
-Triangle sorted(Triangle t) {
-    std::ranges::sort(t);
-    return t;
-}
-
 /// Whether one is the other, turned about, and not turned over.
 bool same_way_round(const Triangle& a, const Triangle& b) {
     const auto first = static_cast<std::size_t>(std::ranges::find(b, a[0]) - b.begin());

@@ -19,11 +19,6 @@ using Triangle = std::array<Vertex, 3>;
 
 Triangle lower(const LoosePrism& p) { return {p.vertices[0], p.vertices[1], p.vertices[2]}; }
 Triangle upper(const LoosePrism& p) { return {p.vertices[3], p.vertices[4], p.vertices[5]}; }
-Triangle sorted(Triangle t) {
-    std::ranges::sort(t);
-    return t;
-}
-
 [[noreturn]] void fail(const LoosePrism& prism, const std::string& what) {
     throw FileError("cell " + std::to_string(prism.cell) + ", a prism of layer " + std::to_string(prism.layer) +
                     ", " + what);

@@ -17,11 +17,6 @@ struct FacetRecord {
     int corner;  // of the tet; or the position in the list of boundary facets
 };
 
-std::array<Vertex, 3> sorted(std::array<Vertex, 3> v) {
-    std::ranges::sort(v);
-    return v;
-}
-
 /// The facets of all tets and the given boundary facets, grouped by their smallest vertex: a counting sort,
 /// as the groups are small.
 struct FacetGroups {

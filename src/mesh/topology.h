@@ -3,6 +3,7 @@
 #include <kropla/mesh/cells.h>
 #include <kropla/mesh/mesh.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct Facet {
 [[nodiscard]] inline std::array<Vertex, 3> facet_vertices(const std::array<Vertex, 4>& tet, int corner) {
     const auto [i, j, k] = tet_facets[as_size(corner)];
     return {tet[as_size(i)], tet[as_size(j)], tet[as_size(k)]};
+}
+
+/// Their numbers ascending: what both cells at a facet call it.
+[[nodiscard]] inline std::array<Vertex, 3> sorted(std::array<Vertex, 3> facet) {
+    std::ranges::sort(facet);
+    return facet;
 }
 
 /// Edge k of the tet, numbered as in cells.h.
