@@ -71,6 +71,24 @@ RUNS = {
                           {"max_aspect_ratio": (4.8, 5.5), "min_dihedral [deg]": (20, 40),
                            "volume_bubble [m^3]": (6.0318e-8, 6.0319e-8)}),
 }
+# Drops: their volumes to rounding; for the marangoni drop what is known is 0.0229 m/s.
+RUNS |= {
+    "static_drop": ShortRun(["size.surface=0.35", "size.far=1.5", "time.steps=5", "time.end=5"],
+                            {"max_aspect_ratio": (4.8, 5.5), "u_drop [m/s]": (-5e-4, 5e-4),
+                             "volume_drop [m^3]": (4.1887902047 - 1e-10, 4.1887902048 + 1e-10)}),
+    "oscillating_drop": ShortRun(["size.surface=0.3", "size.far=2", "time.steps=12", "time.end=1.2"],
+                                 {"max_aspect_ratio": (4.8, 5.5), "area_drop [m^2]": (12.6193, 12.6203),
+                                  "volume_drop [m^3]": (4.18877357 - 1e-8, 4.18877358 + 1e-8)}),
+    "rising_drop": ShortRun(["size.surface=0.08", "size.far=0.2", "time.steps=8", "time.end=0.4"],
+                            {"max_aspect_ratio": (4.8, 5.5), "v_drop [m/s]": (0.278, 0.282),
+                             "volume_drop [m^3]": (0.0654498469 - 1e-10, 0.0654498470 + 1e-10)}),
+    "marangoni_drop": ShortRun(["size.surface=0.35", "size.far=2", "time.steps=5", "time.end=0.5"],
+                               {"max_aspect_ratio": (4.8, 5.5), "w_drop [m/s]": (0.0229, 0.0245),
+                                "energy_error [J]": (-1e-11, 1e-11)}),
+    "falling_steel": ShortRun(["size.surface=1.7e-4", "size.far=1.2e-3", "time.steps=6", "time.end=3e-4"],
+                              {"max_aspect_ratio": (4.8, 5.5), "w_droplet [m/s]": (-0.5035, -0.502),
+                               "temperature_mean_droplet [K]": (2299.7, 2299.8), "energy_error [J]": (-1e-12, 1e-12)}),
+}
 # In meshes that are brought, likewise: where the body is, its volume as it was read, how good the mesh is.
 RUNS |= {
     "shifting_ball": ShortRun(["time.end=0.1", "time.steps=4"],

@@ -48,12 +48,13 @@ const Mesh& Attempt::reference() const { return right_.step().reference(); }
 const Mesh& Attempt::before() const { return right_.step().before(); }
 const Changes& Attempt::refined() const { return right_.step().statistics().refined; }
 
-MovedAttempt::MovedAttempt(Attempt&& attempt, double end, std::span<const BodyPlace> places)
+MovedAttempt::MovedAttempt(Attempt&& attempt, double end, std::span<const BodyPlace> places,
+                           std::span<const BodyCourse> courses)
     : right_(std::move(attempt.right_)) {
-    perform(right_, [end, places](MeshStep& step) {
+    perform(right_, [end, places, courses](MeshStep& step) {
         if (!(end > step.time())) throw std::logic_error("a step ends after it begins");
         step.aim_at(end);
-        step.correct(places);
+        step.correct(places, courses);
         step.move_boundary();
         step.optimise();
     });
@@ -63,9 +64,9 @@ double MovedAttempt::end() const { return right_.step().target_time(); }
 const Mesh& MovedAttempt::before() const { return right_.step().before(); }
 const Mesh& MovedAttempt::current() const { return right_.step().current(); }
 std::optional<Refusal> MovedAttempt::refusal() const { return right_.step().refusal(); }
-void MovedAttempt::move_again(std::span<const BodyPlace> places) {
-    perform(right_, [places](MeshStep& step) {
-        step.correct(places);
+void MovedAttempt::move_again(std::span<const BodyPlace> places, std::span<const BodyCourse> courses) {
+    perform(right_, [places, courses](MeshStep& step) {
+        step.correct(places, courses);
         step.move_boundary();
         step.optimise();
     });
@@ -82,8 +83,9 @@ const Mesh& RemeshedAttempt::current() const { return right_.step().current(); }
 const Changes& RemeshedAttempt::remeshed() const { return right_.step().statistics().remeshed; }
 const StepStatistics& RemeshedAttempt::statistics() const { return right_.step().statistics(); }
 
-MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places) {
-    return {std::move(attempt), end, places};
+MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places,
+                         std::span<const BodyCourse> courses) {
+    return {std::move(attempt), end, places, courses};
 }
 
 void refuse(MovedAttempt&& attempt) {

@@ -59,15 +59,17 @@ public:
     [[nodiscard]] const Mesh& current() const;
     /// Empty if the bodies arrived and every cell meets the floors, all along its way.
     [[nodiscard]] std::optional<Refusal> refusal() const;
-    /// Does 2.3 and 2.4 again, with these bodies there; the others stay where they were. If the step is accepted, their
-    /// motions go on from there. Throws std::logic_error if there is no such body.
-    void move_again(std::span<const BodyPlace> places);
+    /// Does 2.3 and 2.4 again, with these bodies there, or deformed so; the others stay where they were. If the step is
+    /// accepted, motions go on from there; deformations are told for this step alone. Throws std::logic_error if there is
+    /// no such body, or if one is told a course that moves rigidly.
+    void move_again(std::span<const BodyPlace> places, std::span<const BodyCourse> courses = {});
 
 private:
     friend class RemeshedAttempt;
-    friend MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places);
+    friend MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places,
+                                    std::span<const BodyCourse> courses);
     friend void refuse(MovedAttempt&& attempt);
-    MovedAttempt(Attempt&& attempt, double end, std::span<const BodyPlace> places);
+    MovedAttempt(Attempt&& attempt, double end, std::span<const BodyPlace> places, std::span<const BodyCourse> courses);
     AttemptRight right_;
 };
 
@@ -87,9 +89,10 @@ private:
     AttemptRight right_;
 };
 
-/// Takes the bodies to where they are at `end` [s]: these to their places, as `move_again` does, all others as their
+/// Takes the bodies to where they are at `end` [s]: these to their places or on their courses, as `move_again` does, all others as their
 /// motions say. Throws std::logic_error if that is not after the step's start.
-[[nodiscard]] MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places = {});
+[[nodiscard]] MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places = {},
+                                       std::span<const BodyCourse> courses = {});
 /// Ends the attempt; if the mesh stopped it, the next one will be remeshed where it got stuck.
 void refuse(MovedAttempt&& attempt);
 /// Throws std::logic_error if the attempt is to be refused.

@@ -98,8 +98,14 @@ Snapshot MeshStep::snapshot_at(double t) const {
 
 void MeshStep::end_attempt() noexcept {
     for (auto& [body, told] : told_) std::swap(domain_.bodies[body].motion, told.before);
-    told_.clear();
+    forget_told();
     under_way_ = false;
+}
+
+void MeshStep::forget_told() noexcept {
+    told_.clear();
+    for (auto& [body, deformation] : not_told_) std::swap(domain_.bodies[body].deformation, deformation);
+    not_told_.clear();
 }
 
 void MeshStep::begin_step() {
@@ -181,7 +187,7 @@ void MeshStep::move_boundary() {
     note_moved();
 }
 
-void MeshStep::correct(std::span<const BodyPlace> places) {
+void MeshStep::correct(std::span<const BodyPlace> places, std::span<const BodyCourse> courses) {
     for (const auto& [body, pose] : places) {
         if (body >= planned_.motion.size()) throw std::logic_error("a body is told its place that the domain has not");
         const CorrectedStep step{planned_.corrected[body].to, correction(planned_.motion[body](target_time_), pose), time_, target_time_};
@@ -189,7 +195,13 @@ void MeshStep::correct(std::span<const BodyPlace> places) {
         known->second.step = step;
         domain_.bodies[body].motion = corrected(planned_.motion[body], step);
     }
-    if (places.empty()) return;
+    for (const auto& [body, deformation] : courses) {
+        if (body >= domain_.bodies.size() || !domain_.bodies[body].deformation || !deformation)
+            throw std::logic_error("a body is told how it deforms that does not");
+        not_told_.try_emplace(body, domain_.bodies[body].deformation);
+        domain_.bodies[body].deformation = deformation;
+    }
+    if (places.empty() && courses.empty()) return;
     copy_changed(current_, before_, {}, moved_);
     way_ = {};
 }
@@ -397,7 +409,7 @@ const Changes& MeshStep::remesh() {
 void MeshStep::accept() {
     copy_changed(reference_, current_, replaced_.list(), moved_);
     for (const auto& [body, told] : told_) planned_.corrected[body] = told.step;
-    told_.clear();
+    forget_told();
     time_ = target_time_;
     trouble_.clear();
     const auto adapted = std::exchange(adapted_, {});

@@ -42,8 +42,8 @@ public:
     /// as many legs as it takes for all cells to stay valid.
     void optimise();
 
-    /// The current mesh is the one before the motion again, which is to end with these bodies there.
-    void correct(std::span<const BodyPlace> places);
+    /// The current mesh is the one before the motion again, which is to end with these bodies there, or deformed so.
+    void correct(std::span<const BodyPlace> places, std::span<const BodyCourse> courses);
 
     /// The mesh of the step at its beginning and at its end: one connectivity, two sets of places. After
     /// remesh() and accept(), before() is the mesh at the end of the step, not yet remeshed.
@@ -67,6 +67,8 @@ private:
         Motion before;  // what the domain had
     };
 
+    /// Bodies move and deform as the domain was made, or go on.
+    void forget_told() noexcept;
     /// Looks for the surfaces of deforming bodies in the reference; for what gaps have left uneven.
     void find_deforming();
     void find_uneven();
@@ -98,6 +100,7 @@ private:
     Domain domain_;                          // with motions that go on from where bodies really are
     PlannedMotions planned_;
     std::map<std::size_t, Told> told_;       // by bodies: this step
+    std::map<std::size_t, Deformation> not_told_;  // what the domain had, by bodies that are told another for this step
     AdaptOptions options_;
     MovedBodies bodies_;
     std::vector<BodySurface> adapted_;  // surfaces that the step changes

@@ -201,6 +201,34 @@ void keep_with_flow(const Mesh& mesh, const Travel& travel, const BodySurface& s
         motion.place[surface.vertices[i]] += 6 * missing[i] / squared_norm(normal[i]) * normal[i];
 }
 
+/// Shifts the vertices of a surface evenly along their normals, until what it holds is what it held before.
+void keep_volume(const Mesh& mesh, const BodySurface& surface, ZoneMotion& motion) {
+    constexpr int passes = 4;  // of Newton's method, which is next to linear here
+    const auto number = [&](Vertex v) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
+    };
+    const Vec3 middle = mesh.position[surface.vertices.front()];
+    const auto volume = [&](const Array<Vertex, Vec3>& place) {
+        double sum = 0;
+        for (const auto& [a, b, c] : surface.triangles)
+            sum += dot(place[a] - middle, cross(place[b] - middle, place[c] - middle)) / 6;
+        return sum;
+    };
+    const double wanted = volume(mesh.position);
+    for (int pass = 0; pass < passes; ++pass) {
+        std::vector<Vec3> gradient(surface.vertices.size());  // of the volume, by the vertices' places
+        for (const auto& [a, b, c] : surface.triangles) {
+            const Vec3 area = cross(motion.place[b] - motion.place[a], motion.place[c] - motion.place[a]);
+            for (Vertex v : {a, b, c}) gradient[number(v)] += area / 6;
+        }
+        double gained = 0;  // per length of the shift
+        for (const Vec3& g : gradient) gained += norm(g);
+        const double shift = (wanted - volume(motion.place)) / gained;
+        for (std::size_t i = 0; i < gradient.size(); ++i)
+            motion.place[surface.vertices[i]] += shift / norm(gradient[i]) * gradient[i];
+    }
+}
+
 /// Then puts the columns of layers on their wall, as high as the gaps there let them be at the end.
 void place_columns(const Mesh& mesh, const Snapshot& at_end, ZoneMotion& motion) {
     for (const PrismLayer& layer : mesh.layers) {
@@ -316,8 +344,10 @@ void place_boundary(const Mesh& mesh, const Domain& domain, const MovedBodies& b
     reach_out(mesh, travelling, bodies, zone);
     fit(motion, mesh);
     place_bodies(mesh, travelling, bodies.vertices, motion);
-    for (const BodySurface& surface : bodies.deforming)
+    for (const BodySurface& surface : bodies.deforming) {
         keep_with_flow(mesh, travelling[surface.body], surface, motion);
+        if (domain.bodies[surface.body].keeps_volume) keep_volume(mesh, surface, motion);
+    }
     const Snapshot at_end = snapshot(domain, t1, bodies.deforming, motion.place, bodies.uneven);
     place_columns(mesh, at_end, motion);
     place_others(mesh, at_start, travelling, bodies.surroundings, zone, motion);

@@ -28,6 +28,12 @@ struct BodyPlace {
     Pose pose;
 };
 
+/// How a body that deforms really goes in a step.
+struct BodyCourse {
+    std::size_t body;
+    Deformation deformation;
+};
+
 /// A mesh that follows its bodies: the reference mesh, which nothing changes but an attempt that is accepted
 /// (attempt.h), and what is kept from step to step so that a step costs no more than what it changes.
 class MovingMesh {

@@ -158,12 +158,15 @@ toml::table parse(std::string_view text, const std::string& name) {
 
 /// What does not know bodies that deform.
 void refuse_with_deforming(const CaseTable& file, const Case& it) {
+    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
+        if (!it.domain.bodies[body].deformation || it.liquid[body] != 0) continue;
+        for (const char* key : {"heat", "species", "flow"})
+            if (file.has(key))
+                file.refuse(key, fmt::format("is solved for around bodies that move rigidly, or with the flow; {} deforms "
+                                             "(motion.kind = \"field\")", named(it.domain.bodies[body])));
+    }
     const auto deforms = std::ranges::find_if(it.domain.bodies, [](const Body& body) { return bool(body.deformation); });
     if (deforms == it.domain.bodies.end()) return;
-    const std::string why = fmt::format("is solved for around bodies that move rigidly; {} deforms "
-                                        "(motion.kind = \"field\")", named(*deforms));
-    for (const char* key : {"heat", "species", "flow"})
-        if (file.has(key)) file.refuse(key, why);
     if (it.quality.paper) file.table("quality").refuse("method", fmt::format("\"paper\" moves rigid bodies; {} deforms", named(*deforms)));
 }
 
@@ -182,6 +185,8 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     if (file.has("quality")) it.quality = read_quality(file.table("quality"));
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
+    for (std::size_t body = 0; body < it.liquid.size() && it.heat; ++body)
+        if (it.liquid[body] != 0) it.heat->regions[body + 1].carried = Carried::at_rest;
     read_species(file, it);
     read_flow(file, it);
     read_contact(file, it);

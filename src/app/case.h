@@ -72,6 +72,7 @@ struct WrittenHeat {
 struct WrittenFlow {
     WrittenKeys general;
     std::vector<WrittenKeys> regions;  // per region
+    std::vector<WrittenKeys> surfaces;  // per body
     std::array<std::string, 6> faces;  // per face of the box
 };
 struct WrittenSpecies {
@@ -104,6 +105,7 @@ struct Case {
     std::vector<Species> species;
     std::optional<FlowPlan> flow;  // nothing: the surroundings rest, but for making way
     std::vector<std::optional<FreeMotion>> free;  // per body: goes where forces take it
+    std::vector<char> liquid;      // per body: goes with the flow, on both sides of its surface
     std::optional<ContactOptions> contact;  // of free bodies; nothing: the run ends where the mesh cannot follow them
     OutputPlan output;
     RandomSeed random;

@@ -233,8 +233,16 @@ LayerOptions read_layer(const CaseTable& table) {
 
 namespace {
 
+void go_with_flow(const CaseTable& table, Case& it, Body& body) {
+    table.allow({"kind"});
+    it.liquid.back() = 1;
+    body.deformation = [](const Vec3& x, double, double) { return x; };  // each step says how
+    body.keeps_volume = true;
+}
+
 void read_motion(const CaseTable& table, Case& it, Body& body, WrittenBody& written) {
     it.free.emplace_back();
+    it.liquid.push_back(0);
     if (!table.has("motion")) return;
     const CaseTable motion = table.table("motion");
     const std::string kind = motion.has("kind") ? motion.text("kind") : "path";
@@ -242,7 +250,8 @@ void read_motion(const CaseTable& table, Case& it, Body& body, WrittenBody& writ
     else if (kind == "path") body.motion = read_path(motion, written);
     else if (kind == "field")
         body.deformation = read_field(motion, fmt::format("body[{}]", it.domain.bodies.size()), written);
-    else motion.refuse_value("kind", "must be \"path\", \"field\" or \"free\"");
+    else if (kind == "flow") go_with_flow(motion, it, body);
+    else motion.refuse_value("kind", "must be \"path\", \"field\", \"free\" or \"flow\"");
 }
 
 void take_body(Case& it, Body body, WrittenBody written) {
@@ -263,7 +272,8 @@ void read_bodies(const CaseTable& file, Case& it) {
         read_motion(table, it, body, written);
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
         if (body.layer && body.deformation)
-            table.refuse("layer", "stands on bodies that move rigidly; this one deforms (motion.kind = \"field\")");
+            table.refuse("layer", fmt::format("stands on bodies that move rigidly; this one deforms (motion.kind = \"{}\")",
+                                              table.table("motion").text("kind")));
         take_body(it, std::move(body), std::move(written));
     }
     const auto tables = file.tables("body");

@@ -58,17 +58,38 @@ FlowFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
     return face;
 }
 
+/// [flow.surface.NAME] of bodies that are liquid.
+void read_surfaces(const CaseTable& surfaces, Case& it, FlowPlan& plan) {
+    std::vector<std::string> names;
+    for (std::size_t body = 0; body < it.liquid.size(); ++body) names.push_back(it.domain.bodies[body].name);
+    surfaces.allow(names);
+    plan.options.tension.resize(names.size());
+    it.written_flow.surfaces.assign(names.size(), {});
+    for (std::size_t body = 0; body < names.size(); ++body) {
+        if (!surfaces.has(names[body])) continue;
+        if (it.liquid[body] == 0)
+            surfaces.refuse(names[body], "is of a liquid, and the body is solid: give it motion.kind = \"flow\", or leave this out");
+        const CaseTable table = surfaces.table(names[body]);
+        NotedTable surface(table, probe_of(it.domain.box), it.written_flow.surfaces[body]);
+        table.allow({"tension"});
+        if (table.has("tension")) plan.options.tension[body] = read_material(surface, "tension", it, body + 1);
+    }
+}
+
 }  // namespace
 
 void read_flow(const CaseTable& file, Case& it) {
     if (!file.has("flow")) {
-        for (std::size_t body = 0; body < it.free.size(); ++body)
+        for (std::size_t body = 0; body < it.free.size(); ++body) {
             if (it.free[body])
                 file.tables("body")[body].table("motion").refuse("kind", "\"free\" needs [flow]: the forces that move the body");
+            if (it.liquid[body] != 0)
+                file.tables("body")[body].table("motion").refuse("kind", "\"flow\" needs [flow]: what the body goes with");
+        }
         return;
     }
     const CaseTable table = file.table("flow");
-    table.allow({"gravity", "convection", "region", "face"});
+    table.allow({"gravity", "convection", "region", "surface", "face"});
     FlowPlan plan;
     WrittenFlow& written = it.written_flow;
     const Vec3 probe = probe_of(it.domain.box);
@@ -94,9 +115,16 @@ void read_flow(const CaseTable& file, Case& it) {
     for (std::size_t r = 0; r < names.size(); ++r) {
         if (!regions.has(names[r])) continue;
         const CaseTable region = regions.table(names[r]);
-        if (r > 0) regions.refuse(names[r], "bodies are solid so far; only the surroundings can flow");
+        if (r > 0 && it.liquid[r - 1] == 0)
+            regions.refuse(names[r], "is of a liquid, and the body is solid: give it motion.kind = \"flow\", or leave this out");
         plan.options.regions[r] = read_region(NotedTable(region, probe, written.regions[r]), it, r, plan.initial[r]);
     }
+
+    for (std::size_t body = 0; body < it.liquid.size(); ++body)
+        if (it.liquid[body] != 0 && !plan.options.regions[body + 1])
+            table.refuse("region", fmt::format("must have {}, which goes with the flow (motion.kind = \"flow\"): its density "
+                                               "[kg/m^3] and viscosity [Pa s]", names[body + 1]));
+    if (table.has("surface")) read_surfaces(table.table("surface"), it, plan);
 
     written.faces.fill("\"wall\"");
     if (table.has("face")) {

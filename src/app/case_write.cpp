@@ -54,6 +54,7 @@ std::string body(const Case& it, std::size_t number) {
     if (!written.free.empty()) text += "[body.motion]\nkind = \"free\"\n" + keys(it, table + ".motion", written.free);
     if (!written.velocity.empty())
         text += "[body.motion]\nkind = \"field\"\n" + line(it, table + ".motion", "velocity", written.velocity);
+    if (it.liquid[number] != 0) text += "[body.motion]\nkind = \"flow\"\n";
     if (!written.angle.empty()) text += fmt::format("angle = {}\naxis = {}\n", written.angle, written.axis);
     if (body.layer) text += layer(it, *body.layer, table + ".layer");
     return text;
@@ -97,6 +98,11 @@ std::string flow(const Case& it) {
         const std::string name = region_name(it.domain, r);
         if (!written.regions[r].empty())
             text += fmt::format("\n[flow.region.{}]\n", toml_text(name)) + keys(it, "flow.region." + name, written.regions[r]);
+    }
+    for (std::size_t body = 0; body < written.surfaces.size(); ++body) {
+        const std::string name = region_name(it.domain, body + 1);
+        if (!written.surfaces[body].empty())
+            text += fmt::format("\n[flow.surface.{}]\n", toml_text(name)) + keys(it, "flow.surface." + name, written.surfaces[body]);
     }
     text += "\n[flow.face]\n";
     for (std::size_t f = 0; f < face_keys.size(); ++f) text += fmt::format("{} = {}\n", face_keys[f], written.faces[f]);

@@ -18,7 +18,42 @@ constexpr std::array<const char*, 3> components = {"velocity_x", "velocity_y", "
 
 std::size_t place_of_flow(const Case& it) { return (it.heat ? 1 : 0) + species_fields(it).size(); }
 
-std::size_t count_flow_fields(const Case& it) { return expands(it) ? 5 : 4; }
+std::size_t count_flow_fields(const Case& it) {
+    const std::size_t liquids = liquids_of(it).size();
+    return (expands(it) ? 5 : 4) + (liquids > 0 ? liquids + 3 : 0);
+}
+
+std::vector<Region> liquids_of(const Case& it) {
+    std::vector<Region> liquids;
+    for (std::size_t body = 0; body < it.liquid.size(); ++body)
+        if (it.liquid[body] != 0) liquids.push_back(region_of_body(body));
+    return liquids;
+}
+
+std::vector<Carrying> carrying_of_flow(const Case& it) {
+    const std::vector<Region> liquids = liquids_of(it);
+    std::vector<Carrying> how(count_flow_fields(it), {.only = Region(0), .limit = false});
+    if (expands(it)) how[4].limit = true;  // the density has no new extrema
+    if (liquids.empty()) return how;
+    Carrying of_all{.limit = false};  // momentum is kept
+    for (const auto& region : it.flow->options.regions) of_all.weight.push_back(region ? region->density(0) : 1);
+    for (std::size_t k = 0; k < 3; ++k) how[k] = how[how.size() - 3 + k] = of_all;
+    for (std::size_t k = 0; k < liquids.size(); ++k) how[how.size() - 3 - liquids.size() + k].only = liquids[k];
+    return how;
+}
+
+Array<Vertex, Vec3> flow_rate(const Case& it, std::span<const NodalField> fields) {
+    const auto rate = fields.subspan(place_of_flow(it) + count_flow_fields(it) - 3, 3);
+    Array<Vertex, Vec3> all(rate[0].values.size());
+    for (Vertex v : all.indices()) all[v] = {rate[0].values[v], rate[1].values[v], rate[2].values[v]};
+    return all;
+}
+
+void keep_flow_rate(const Case& it, const Array<Vertex, Vec3>& rate, std::span<NodalField> fields) {
+    const auto kept = fields.subspan(place_of_flow(it) + count_flow_fields(it) - 3, 3);
+    for (Vertex v : rate.indices())
+        for (int axis = 0; axis < 3; ++axis) kept[as_size(axis)].values[v] = rate[v][axis];
+}
 
 bool expands(const Case& it) { return it.flow && !it.flow->options.regions[0]->density.constant(); }
 
@@ -31,6 +66,11 @@ std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it, const Arr
         fields.push_back({"density", "kg/m^3", Array<Vertex, double>(vertices, 0.0)});
         for (Vertex v : mesh.position.indices()) fields.back().values[v] = it.flow->options.regions[0]->density(temperature[v]);
     }
+    const std::vector<Region> liquids = liquids_of(it);
+    for (Region liquid : liquids)
+        fields.push_back({"pressure_" + region_name(it.domain, as_size(liquid.value)), "Pa", Array<Vertex, double>(vertices, 0.0)});
+    for (const char* name : {"rate_x", "rate_y", "rate_z"})
+        if (!liquids.empty()) fields.push_back({name, "m/s^2", Array<Vertex, double>(vertices, 0.0)});
     for (std::size_t r = 0; r < it.flow->initial.size(); ++r) {
         const std::string key = fmt::format("flow.region.{}.initial", region_name(it.domain, r));
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -44,10 +84,33 @@ std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it, const Arr
     return fields;
 }
 
+std::vector<NodalField> shown_pressures(const Mesh& mesh, const Case& it, std::span<const NodalField> fields) {
+    FlowState flow = flow_state(it, fields);
+    std::vector<NodalField> shown = {{"pressure", "Pa", std::move(flow.pressure)}};
+    if (flow.within.empty()) return shown;
+    NodalField within{"pressure_within", "Pa", shown[0].values};
+    for (Region liquid : liquids_of(it))
+        for_each_cell(living_cells(mesh, liquid), [&](const auto& cell) {
+            for (Vertex v : cell_vertices(mesh, cell)) within.values[v] = flow.within[as_size(liquid.value - 1)][v];
+        });
+    Array<Vertex, char> outside(mesh.position.size(), 0);
+    for_each_cell(living_cells(mesh, Region(0)), [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) outside[v] = 1;
+    });
+    for (Vertex v : outside.indices())
+        if (!outside[v]) shown[0].values[v] = within.values[v];
+    shown.push_back(std::move(within));
+    return shown;
+}
+
 FlowState flow_state(const Case& it, std::span<const NodalField> fields) {
     const auto flow = fields.subspan(place_of_flow(it), count_flow_fields(it));
     FlowState state{Array<Vertex, Vec3>(flow[0].values.size()), flow[3].values};
     if (expands(it)) state.density = flow[4].values;
+    const std::vector<Region> liquids = liquids_of(it);
+    if (!liquids.empty()) state.within.assign(it.domain.bodies.size(), state.pressure);
+    for (std::size_t k = 0; k < liquids.size(); ++k)
+        state.within[as_size(liquids[k].value - 1)] = flow[flow.size() - 3 - liquids.size() + k].values;
     for (Vertex v : state.velocity.indices()) state.velocity[v] = {flow[0].values[v], flow[1].values[v], flow[2].values[v]};
     return state;
 }
@@ -58,6 +121,9 @@ void keep_flow(const Case& it, const FlowState& flow, std::span<NodalField> fiel
         for (int axis = 0; axis < 3; ++axis) kept[as_size(axis)].values[v] = flow.velocity[v][axis];
     kept[3].values = flow.pressure;
     if (expands(it)) kept[4].values = flow.density;
+    const std::vector<Region> liquids = liquids_of(it);
+    for (std::size_t k = 0; k < liquids.size(); ++k)
+        kept[kept.size() - 3 - liquids.size() + k].values = flow.within[as_size(liquids[k].value - 1)];
 }
 
 // The derivative of the motion by differences over a small part of the step; of the rotation, R' R^T is the spin's cross.

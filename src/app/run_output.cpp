@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <cmath>
 
 namespace kropla {
@@ -109,7 +110,7 @@ void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* 
     std::vector<NodalVectorField> vectors;
     if (it_.flow) {
         FlowState flow = flow_state(it_, state.fields);
-        fields.push_back({"pressure", "Pa", std::move(flow.pressure)});
+        std::ranges::move(shown_pressures(mesh, it_, state.fields), std::back_inserter(fields));
         if (expands(it_)) fields.push_back({"density", "kg/m^3", std::move(flow.density)});
         vectors.push_back({"velocity", "m/s", std::move(flow.velocity)});
     }

@@ -2,6 +2,7 @@
 
 #include "app/case_heat.h"
 #include "app/flow_fields.h"
+#include "app/liquid_bodies.h"
 #include "app/species_fields.h"
 #include "simulate/cells.h"
 #include "simulate/elements.h"
@@ -90,8 +91,8 @@ public:
         for (const SpeciesField& field : species_fields(it))
             fields_.per_vertex(state.fields[field.place].values, {.only = Region(field.region)});
         if (!it.flow) return;
-        for (std::size_t k = 0; k < count_flow_fields(it); ++k)  // the density has no new extrema
-            fields_.per_vertex(state.fields[place_of_flow(it) + k].values, {.only = Region(0), .limit = k >= 4});
+        const std::vector<Carrying> how = carrying_of_flow(it);
+        for (std::size_t k = 0; k < how.size(); ++k) fields_.per_vertex(state.fields[place_of_flow(it) + k].values, how[k]);
     }
 
     Advanced advance(const StepOptions& options, std::function<void(const Mesh&)> last_look = {}) {
@@ -99,7 +100,10 @@ public:
         if (it_.heat) how.contents = {[&](const Mesh& mesh) { return energy_on(mesh); }};
         for (std::size_t s = 0; s < it_.species.size(); ++s)
             how.contents.push_back([&, s](const Mesh& mesh) { return energy_of(mesh, concentrations(it_, s, state_.fields)); });
-        how.expected = [&](double end) { return free_places(end); };
+        how.expected = [&](const Mesh& before, double end) {
+            expect_liquids(before, end);
+            return BodiesMoved{free_places(end), courses()};
+        };
         Advanced done = [&] {
             try {
                 return kropla::advance(state_.moving, fields_, options.dt,
@@ -162,7 +166,10 @@ private:
             SolvedFlow solved;
             if (it_.flow) {
                 if (const Answer answer = solve_flow(step, flow, solved); !std::holds_alternative<Solved>(answer)) return answer;
-                if (!in_turns && !bodies_agree()) return BodiesMoved{places()};
+                if (!in_turns) {
+                    const bool rigid = bodies_agree();
+                    if (!liquids_agree(step, flow, rigid) || !rigid) return BodiesMoved{places(), courses()};
+                }
             }
             if (!it_.heat && it_.species.empty()) break;
             flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt,
@@ -174,6 +181,7 @@ private:
             expected_ = temperature();
         }
         if (in_turns && !bodies_agree()) return BodiesMoved{places()};
+        if (liquids_) keep_flow_rate(it_, rate_over(step, flow), state_.fields);
         if (it_.flow) keep_flow(it_, flow, state_.fields);
         if (!enthalpy_.empty()) take_enthalpies(step.current);
         for (std::size_t s = 0; s < it_.species.size(); ++s) solve_species(step, s);
@@ -239,6 +247,32 @@ private:
         return places;
     }
 
+    /// Where liquid bodies are expected, if the flow goes on as in the step before.
+    void expect_liquids(const Mesh& before, double end) {
+        const std::vector<Region> liquids = liquids_of(it_);
+        if (liquids.empty()) return;
+        const double t = state_.moving.time();
+        const FlowState flow = flow_state(it_, state_.fields);
+        liquids_.emplace(liquids, before, flow.velocity, flow_rate(it_, state_.fields), t, end - t);
+        settled_.reset();
+    }
+    [[nodiscard]] std::vector<BodyCourse> courses() const { return liquids_ ? liquids_->courses() : std::vector<BodyCourse>{}; }
+    /// Is the mesh where the flow takes liquid bodies? If it is near, and the others agree, the flow is settled, and only the
+    /// mesh has to go there.
+    bool liquids_agree(const StepToSolve& step, const FlowState& flow, bool others) {
+        if (!liquids_ || settled_) return true;
+        const LiquidStep::Verdict verdict = liquids_->take(step.before, step.current, report.flow.surfaces);
+        if (verdict == LiquidStep::Verdict::near && others) settled_ = flow;
+        return verdict == LiquidStep::Verdict::arrived;
+    }
+    [[nodiscard]] Array<Vertex, Vec3> rate_over(const StepToSolve& step, const FlowState& flow) const {
+        const FlowState begin = flow_state(it_, state_.fields);
+        Array<Vertex, Vec3> rate(flow.velocity.size());
+        for (Vertex v : rate.indices())
+            if (alive(step.current, v)) rate[v] = (flow.velocity[v] - begin.velocity[v]) / step.dt;
+        return rate;
+    }
+
     /// The velocities of the surfaces of bodies.
     [[nodiscard]] std::vector<std::function<RigidVelocity(double)>> surface_velocities(double dt) const {
         std::vector<std::function<RigidVelocity(double)>> velocities;
@@ -267,6 +301,10 @@ private:
         constexpr double of_mass = 1e-6;  // [-] a hundredth of what forces ask for, for the sake of the mass
         constexpr double let_pass = 1.1;  // [-] of the Courant number: no step is taken back for a little
         report.rounds = step.round;
+        if (settled_) {
+            flow = *settled_;
+            return Solved{};
+        }
         FlowOptions options = it_.flow->options;
         options.bodies = surface_velocities(step.dt);
         options.tolerance = of_mass;
@@ -310,7 +348,7 @@ private:
         HeatOptions options{.regions = std::vector<HeatRegion>(it_.domain.bodies.size() + 1)};
         for (std::size_t r = 0; r < options.regions.size(); ++r) {
             options.regions[r].name = region_name(it_.domain, r);
-            options.regions[r].carried = r == 0 ? Carried::at_rest : Carried::with_mesh;
+            options.regions[r].carried = r == 0 || it_.liquid[r - 1] != 0 ? Carried::at_rest : Carried::with_mesh;
         }
         return options;
     }
@@ -323,6 +361,8 @@ private:
     Array<Vertex, double> expected_;   // temperature [K] at the end of the step, and
     Array<Vertex, Vec3> expected_at_;  // where the vertices were [m]
     FreeSteps free_;  // bodies that go where forces take them, in this attempt
+    std::optional<LiquidStep> liquids_;  // bodies that go with the flow, likewise
+    std::optional<FlowState> settled_;   // what the flow is, if only the mesh has to follow it still
     std::optional<Contacts> contacts_;  // likewise, what they do to each other
     std::string unsolved_;  // why the flow could not be solved for, in the last round
     std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor

@@ -58,6 +58,7 @@ struct Body {
     std::optional<double> size = {};                 // [m] target edge length at its surface; none: size.surface
     Deformation deformation = {};  // none: it moves rigidly. Else its surface goes with it, motion is not asked, and of a
                                    //   moving mesh's domain `shape` is what the mesh has at its time
+    bool keeps_volume = false;     // as it deforms, by an even shift along the normals of its surface
 };
 
 /// What size.growth counts for at most: beyond, neighbouring cells differ so much that some cannot keep an R/r

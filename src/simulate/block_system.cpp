@@ -27,15 +27,17 @@ std::vector<std::uint32_t> cells_of(const CellsAtRows<n>& at, std::size_t first_
 
 }  // namespace
 
-BlockPattern make_block_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks) {
-    BlockPattern blocks{make_pattern(mesh, cells, ranks), {}};
+BlockPattern make_block_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks, UpperSides upper) {
+    BlockPattern blocks{make_pattern(mesh, cells, ranks, std::move(upper)), {}};
     const std::size_t rows = blocks.pattern.rows.count();
     const std::size_t count = count_parts(rows);
     blocks.parts.resize(count);
     for_all(count, [&](std::size_t p) {
         const std::size_t first = p * rows / count, end = (p + 1) * rows / count;
         blocks.parts[p] = {first, end, cells_of(blocks.pattern.tets, first, end),
-                           cells_of(blocks.pattern.prisms, first, end)};
+                           cells_of(blocks.pattern.prisms, first, end),
+                           cells_of(blocks.pattern.upper_tets, first, end),
+                           cells_of(blocks.pattern.upper_prisms, first, end)};
     }, 1);
     return blocks;
 }

@@ -36,11 +36,13 @@ struct BlockPattern {
     struct Part {
         std::size_t first_row, end_row;            // owned rows
         std::vector<std::uint32_t> tets, prisms;  // places in Pattern::cells, ascending
+        std::vector<std::uint32_t> upper_tets, upper_prisms;  // in Pattern::upper
     };
     Pattern pattern;
     std::vector<Part> parts;
 };
-[[nodiscard]] BlockPattern make_block_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks);
+[[nodiscard]] BlockPattern make_block_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks,
+                                              UpperSides upper = {});
 
 /// The rows of a block system that one rank owns.
 struct BlockSystem {
@@ -74,6 +76,25 @@ void add_cell(const SparseRows& rows, const CellsAtRows<n>& at, const BlockPatte
     }
 }
 
+/// Of a cell at the upper side of an interface: the last of the unknowns, which is once per side, has the further rows
+/// of the corners that have one, behind all others.
+template <std::size_t n>
+void part_sides(const CellBlocks<n>& whole, const std::array<int, 2 * n>& rows, bool matrix, CellBlocks<2 * n>& parted) {
+    constexpr std::size_t last = block_size - 1;
+    if (matrix) parted.matrix.fill(0);
+    parted.residual.fill(0);
+    const auto corner_of = [&](std::size_t i, std::size_t k) { return k == last && rows[n + i] >= 0 ? n + i : i; };
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < block_size; ++k) {
+            const std::size_t row = corner_of(i, k);
+            parted.residual[block_size * row + k] = whole.residual[block_size * i + k];
+            for (std::size_t j = 0; matrix && j < n; ++j)
+                for (std::size_t c = 0; c < block_size; ++c)
+                    parted.block(row, corner_of(j, c))[block_size * c + k] =
+                        whole.matrix[block_entries * (n * i + j) + block_size * c + k];
+        }
+}
+
 /// Fills the residual, and the matrix if it is wanted (else it stays), by `kernel(cell, CellBlocks<n>&)`,
 /// which is asked from several threads at once and sets all that is wanted of a cell. Throws Interrupted if
 /// the watch says so.
@@ -90,12 +111,16 @@ void assemble_blocks(const Mesh& mesh, const BlockPattern& blocks, const Kernel&
         for (std::size_t k = 0; k < cells.size(); ++k) {
             if (k % 4096 == 0) heed(watch);
             const std::uint32_t c = cells[k];
-            const auto vertices = cell_vertices(mesh, names[c]);
+            const std::array<int, n> rows = corner_rows<n>(pattern.numbering, mesh, names[c]);
             std::array<std::size_t, n> row;
-            for (std::size_t i = 0; i < n; ++i)
-                row[i] =
-                    static_cast<std::size_t>(pattern.numbering.row[vertices[i]] - pattern.rows.first_row);
-            kernel(names[c], of_cell);
+            for (std::size_t i = 0; i < n; ++i) row[i] = static_cast<std::size_t>(rows[i] - pattern.rows.first_row);
+            if constexpr (n > 6) {
+                CellBlocks<n / 2> whole;
+                kernel(names[c], whole);
+                part_sides(whole, rows, matrix, of_cell);
+            } else {
+                kernel(names[c], of_cell);
+            }
             add_cell(pattern.rows, at, part, c, row, of_cell, matrix, next, system);
         }
     };
@@ -109,6 +134,8 @@ void assemble_blocks(const Mesh& mesh, const BlockPattern& blocks, const Kernel&
                       system.block(static_cast<std::size_t>(pattern.rows.begin[part.end_row])), 0.0);
         add_all(part, pattern.tets, pattern.cells.tets, part.tets);
         add_all(part, pattern.prisms, pattern.cells.prisms, part.prisms);
+        add_all(part, pattern.upper_tets, pattern.upper.tets, part.upper_tets);
+        add_all(part, pattern.upper_prisms, pattern.upper.prisms, part.upper_prisms);
     }, 1);
 }
 

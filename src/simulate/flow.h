@@ -18,8 +18,10 @@ namespace kropla {
 // du/dt at a vertex that moves with the mesh's velocity w, in the non-conservative form, which keeps a
 // uniform flow on any moving mesh. Velocity and pressure are linear in tets, and linear along and across
 // columns in prisms, stabilised by the residual: SUPG, PSPG and grad-div (flow_cell.cpp). Density, viscosity
-// and the stabilisation's times are of one region each; at interfaces of liquids and gases velocity and
-// pressure are continuous.
+// and the stabilisation's times are of one region each; at interfaces of liquids and gases the velocity is
+// continuous, and the pressure is once per side, so that it may jump. Surface tension acts there (tension.h).
+// The surface of a liquid goes with the flow: where the mesh has it elsewhere at the step's end, the tension is that
+// of the place where the flow takes it, in linear terms, and the report says where that is.
 //
 // A gas whose density depends on the temperature expands where it is heated, at the pressure that is around: slowly
 // against sound, which is left out. In place of div u = 0 comes
@@ -73,12 +75,16 @@ enum class FlowScheme {
     steady,  ///< no rates, and a mesh that rests: what lasts with the surfaces' present velocities
 };
 
+/// The tension of a surface between liquids or gases [N/m], of the temperature there.
+using Tension = std::optional<Property>;
+
 struct FlowOptions {
     // Of region 0, 1, ...: a liquid or gas, or nothing: a solid body.
     std::vector<std::optional<FlowRegion>> regions;
     // Velocities of regions 1, 2, ...; of those that are empty, or not there: the mesh's, (x1 - x0) / dt, of
     // first order in time where a body accelerates.
     std::vector<std::function<RigidVelocity(double t)>> bodies = {};
+    std::vector<Tension> tension = {};     // of the surfaces of regions 1, 2, ... that are liquid
     Vec3 gravity = {};                     // [m/s^2]
     bool convection = true;                // false: Stokes
     std::array<FlowFace, 6> faces = {};    // x min, x max, y min, y max, z min, z max
@@ -90,10 +96,13 @@ struct FlowOptions {
 
 struct FlowState {
     Array<Vertex, Vec3> velocity;    // [m/s]; zero in solid bodies, but for their surface
-    Array<Vertex, double> pressure;  // [Pa]; zero in them
+    Array<Vertex, double> pressure;  // [Pa]; zero in them; where two regions meet, that of the lower number
     // [kg/m^3] where it depends on the temperature: what is there, and not what the temperature would make of it, so that
     // mass is kept from step to step. Empty at a start: the temperature's at the step's end.
     Array<Vertex, double> density = {};
+    // [Pa] of regions 1, 2, ..., where more than one flows: the pressure at their vertices, where they meet a region of a
+    // lower number on their side. Empty: as `pressure`.
+    std::vector<Array<Vertex, double>> within = {};
 };
 
 /// What a flow does to a solid body: consistent, the residual of the momentum rows at the body's surface.
@@ -112,11 +121,21 @@ struct FaceMass {
     double rate;  // [kg/s] out of the box, in the mean over the step
 };
 
+/// Where the flow takes the surface of a liquid in a step.
+struct SurfaceCourse {
+    Region body;
+    std::vector<std::array<Vertex, 3>> facets;  // normals out of the body
+    std::vector<Vertex> vertices;       // ascending
+    std::vector<Vec3> displacement;     // [m] of what is there at the step's begin
+    double area = 0;                    // [m^2] at its end
+};
+
 struct FlowReport {
     int iterations = 0;  // of the linear solver
     int passes = 0;      // of Newton's method, of all stages
     double error = 0;    // [-] what is left of the first residual
     std::vector<BodyForce> bodies = {};    // of solid ones
+    std::vector<SurfaceCourse> surfaces = {};  // of liquid ones
     std::array<double, 6> face_flux = {};  // [m^3/s] out through each face
     // [N] on each face; nothing where it is open. Where faces meet, what acts on vertices is of the face
     // across that direction, else of both: of shear a share of the cells' size goes to faces beside.

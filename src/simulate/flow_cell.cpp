@@ -72,7 +72,10 @@ template <std::size_t n, class Name>
 FlowCell<n> gather(const FlowStage& stage, const Name& name) {
     FlowCell<n> cell;
     cell.vertex = cell_vertices(stage.mesh, name);
-    const FlowMaterial& material = stage.material[cell_region(stage.mesh, name)];
+    const Region region = cell_region(stage.mesh, name);
+    const FlowMaterial& material = stage.material[region];
+    const Array<Vertex, double>* const within =
+        stage.upper.empty() || region.value == 0 ? nullptr : &stage.guess.within[as_size(region.value - 1)];
     const bool varies = !material.densities.empty();
     cell.density = varies ? mean_at(material.densities, cell.vertex) : material.density;
     cell.viscosity =
@@ -86,7 +89,7 @@ FlowCell<n> gather(const FlowStage& stage, const Name& name) {
         cell.x[i] = stage.position[v];
         const Vec3 u = stage.guess.velocity[v];
         cell.velocity[i] = u;
-        cell.pressure[i] = stage.guess.pressure[v];
+        cell.pressure[i] = within != nullptr && stage.upper[v] == region ? (*within)[v] : stage.guess.pressure[v];
         cell.carrying[i] = stage.convection ? u : Vec3{};
         if (!stage.mesh_velocity.empty()) cell.carrying[i] -= stage.mesh_velocity[v];
         const double density = varies ? material.densities[v] : cell.density;

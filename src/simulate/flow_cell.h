@@ -27,6 +27,7 @@ struct FlowStage {
     Vec3 gravity;                                               // [m/s^2]
     double per_time;                                            // [1/s] 1 / (gamma dt), or zero
     bool convection;
+    const UpperSides& upper;  // where the pressure of a cell is in FlowState::within
 };
 
 /// The cell's part of the residual, rows of momentum [N] and of volume [m^3/s]; and of its derivative if it

@@ -144,6 +144,30 @@ void check_way_out(const Step& step, const FlowBoundary& boundary, const FlowCon
     throw CaseError(message.str());
 }
 
+LiquidSurface liquid_surface(const Mesh& mesh, const FlowOptions& options, Region body,
+                             const Array<Vertex, double>& temperature) {
+    LiquidSurface liquid{body, region_surface(mesh, body).interface, {}, {}};
+    liquid.vertices = vertices_of(liquid.facets);
+    liquid.tension.assign(liquid.vertices.size(), 0);
+    const auto number = static_cast<std::size_t>(body.value - 1);
+    if (number >= options.tension.size() || !options.tension[number]) return liquid;
+    const Property& tension = *options.tension[number];
+    const std::string key = options.key + ".surface." + std::to_string(body.value) + ".tension";
+    if (temperature.empty() && !tension.constant())
+        throw CaseError(key + " depends on the temperature, and there is none");
+    for (std::size_t i = 0; i < liquid.vertices.size(); ++i) {
+        const double value = tension(temperature.empty() ? 0 : temperature[liquid.vertices[i]]);
+        if (!(std::isfinite(value) && value >= 0)) {
+            std::ostringstream message;
+            message << key << " must not be negative, got " << value;
+            if (!temperature.empty()) message << " at " << temperature[liquid.vertices[i]] << " K";
+            throw CaseError(message.str());
+        }
+        liquid.tension[i] = value;
+    }
+    return liquid;
+}
+
 }  // namespace
 
 Cells flow_cells(const Mesh& mesh, const FlowOptions& options) {
@@ -155,14 +179,19 @@ Cells flow_cells(const Mesh& mesh, const FlowOptions& options) {
     return cells;
 }
 
-FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t) {
+FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t,
+                           const Array<Vertex, double>& temperature) {
     FlowBoundary boundary;
     const Cells cells = flow_cells(mesh, options);
     boundary.faces = facets_of_faces(mesh, cells);
     boundary.fixed_walls = vertices_of(facets_of_fixed_walls(mesh, cells));
     for (std::size_t r = 1; r < options.regions.size(); ++r) {
         const Region body(r);
-        if (is_fluid(options, body)) continue;
+        if (is_fluid(options, body)) {
+            LiquidSurface liquid = liquid_surface(mesh, options, body, temperature);
+            if (!liquid.facets.empty()) boundary.liquids.push_back(std::move(liquid));
+            continue;
+        }
         const auto* const motion = motion_of(options, body);
         SolidSurface solid{body, motion != nullptr ? (*motion)(t).centre : centre_of(mesh, body),
                            region_surface(mesh, body).interface, {}};

@@ -2,6 +2,7 @@
 
 #include "simulate/cells.h"
 #include "simulate/flow_cell.h"
+#include "simulate/tension.h"
 #include <kropla/simulate/flow.h>
 
 #include <array>
@@ -21,6 +22,7 @@ struct SolidSurface {
 struct FlowBoundary {
     std::array<std::vector<std::array<Vertex, 3>>, 6> faces;  // normals out of the box
     std::vector<SolidSurface> solids;
+    std::vector<LiquidSurface> liquids;       // of regions 1, 2, ... that flow, where they meet another that does
     std::vector<Vertex> fixed_walls;  // that are no faces of the box: no slip; ascending
 };
 
@@ -35,8 +37,9 @@ struct FlowConditions {
 /// Cells of liquids and gases.
 [[nodiscard]] Cells flow_cells(const Mesh& mesh, const FlowOptions& options);
 
-/// `t` is the time of the step's end.
-[[nodiscard]] FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t);
+/// `t` is the time of the step's end. Throws CaseError if a tension needs a temperature, or is not positive.
+[[nodiscard]] FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double t,
+                                         const Array<Vertex, double>& temperature);
 
 /// Of the step from t to t + dt that starts from `velocity`. Throws CaseError if a quantity is not finite or
 /// what flows in has no way out.

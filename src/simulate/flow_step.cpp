@@ -67,12 +67,14 @@ public:
     FlowSolution(const Ranks& ranks, const Mesh& before, const Mesh& current, const FlowOptions& options,
                  const FlowState& start, double t, double dt, const Array<Vertex, double>& temperature)
         : ranks_(ranks), before_(before), current_(current), options_(options), start_(start), t_(t), dt_(dt),
-          blocks_(make_block_pattern(current, flow_cells(current, options), ranks)),
-          boundary_(flow_boundary(current, options, t + dt)),
+          cells_(flow_cells(current, options)),
+          blocks_(make_block_pattern(current, cells_, ranks, upper_sides(current, cells_))),
+          boundary_(flow_boundary(current, options, t + dt, temperature)),
           conditions_(flow_conditions(before, current, options, boundary_, start.velocity, t, dt)),
           material_(flow_materials(current, options, temperature)), guess_(start),
           solver_(ranks, blocks_, unknowns()) {
         system_.value = solver_.values();
+        find_pressures();
         find_masses();
         if (!steady()) mesh_velocity_ = mesh_velocities(before, current, dt);
     }
@@ -92,11 +94,12 @@ public:
         prescribe(given);
         solve_stage({gamma, 1 - gamma}, start_.velocity, 1 / (gamma * dt_));
         Array<Vertex, Vec3> old = start_.velocity;
-        for (Vertex v : numbering().vertex) {
+        for_each_unknown([&](std::size_t, Vertex v, bool further) {
+            if (further) return;
             const Vec3 gained = guess_.velocity[v] - start_.velocity[v];
             old[v] += onward * gained;
             guess_.velocity[v] = start_.velocity[v] + (1 / gamma) * gained;
-        }
+        });
         prescribe(conditions_.end);
         solve_stage({1, gamma}, old, 1 / (gamma * dt_));
     }
@@ -122,6 +125,10 @@ public:
             report.face_flux[face] = flux_through(boundary_.faces[face], current_.position, guess_.velocity);
             report.net_flux += report.face_flux[face];
         }
+        for (std::size_t s = 0; s < boundary_.liquids.size(); ++s) {
+            const LiquidSurface& liquid = boundary_.liquids[s];
+            report.surfaces.push_back({liquid.body, liquid.facets, liquid.vertices, gone_[s], tensions_[s].area});
+        }
         report_mass(report);
         report.face_force = face_forces(reaction);
         report.largest_courant = largest_courant();
@@ -136,18 +143,63 @@ public:
             end.pressure[v] = guess_.pressure[v];
         }
         if (masses_) end.density = masses_->densities(1);
-        if (!conditions_.closed) return end;
-        double sum = 0, volume = 0;
-        for_each_share(current_, flow_cells(current_, options_), [&](const auto&, Vertex v, double share) {
-            sum += share * end.pressure[v];
-            volume += share;
-        });
-        for (Vertex v : numbering().vertex) end.pressure[v] -= sum / volume;
+        if (conditions_.closed) {
+            double sum = 0, volume = 0;
+            for_each_share(current_, cells_, [&](const auto& cell, Vertex v, double share) {
+                sum += share * pressure_at(v, cell_region(current_, cell));
+                volume += share;
+            });
+            for_each_unknown([&](std::size_t, Vertex v, bool further) {
+                if (!further) end.pressure[v] -= sum / volume;
+            });
+            set_within(end, sum / volume);
+        } else {
+            set_within(end, 0);
+        }
         return end;
     }
 
 private:
     [[nodiscard]] const SparseRows& rows() const { return blocks_.pattern.rows; }
+    [[nodiscard]] const UpperSides& upper() const { return blocks_.pattern.numbering.upper; }
+    /// Calls `visit(global row, vertex, whether the row is the vertex's further one)`.
+    template <class Visit>
+    void for_each_unknown(const Visit& visit) const {
+        for (std::size_t r = 0; r < numbering().vertex.size(); ++r)
+            visit(r, numbering().vertex[r], numbering().is_further(r));
+    }
+    /// In cells of the region.
+    [[nodiscard]] double pressure_at(Vertex v, Region region) const {
+        return numbering().is_upper(v, region) ? guess_.within[as_size(region.value - 1)][v] : guess_.pressure[v];
+    }
+    [[nodiscard]] double& pressure_of(Vertex v, bool further) {
+        return further ? guess_.within[as_size(upper()[v].value - 1)][v] : guess_.pressure[v];
+    }
+    [[nodiscard]] double pressure_of(Vertex v, bool further) const {
+        return further ? guess_.within[as_size(upper()[v].value - 1)][v] : guess_.pressure[v];
+    }
+
+    /// Of the state at the begin: the pressure at inner vertices of the higher regions is the one within.
+    void find_pressures() {
+        if (upper().empty()) return;
+        if (guess_.within.empty()) guess_.within.assign(options_.regions.size() - 1, guess_.pressure);
+        for_each_cell(cells_, [&](const auto& cell) {
+            const Region region = cell_region(current_, cell);
+            if (region.value == 0) return;
+            for (Vertex v : cell_vertices(current_, cell))
+                if (!upper()[v].exists()) guess_.pressure[v] = guess_.within[as_size(region.value - 1)][v];
+        });
+    }
+    /// At the end, less the mean.
+    void set_within(FlowState& end, double mean) const {
+        if (upper().empty()) return;
+        end.within.assign(options_.regions.size() - 1, Array<Vertex, double>(current_.position.size(), 0.0));
+        for_each_cell(cells_, [&](const auto& cell) {
+            const Region region = cell_region(current_, cell);
+            for (Vertex v : cell_vertices(current_, cell))
+                if (region.value > 0) end.within[as_size(region.value - 1)][v] = pressure_at(v, region) - mean;
+        });
+    }
     [[nodiscard]] const Numbering& numbering() const { return blocks_.pattern.numbering; }
     [[nodiscard]] bool steady() const { return options_.scheme == FlowScheme::steady; }
     [[nodiscard]] Vertex vertex_of(std::size_t owned_row) const {
@@ -172,10 +224,10 @@ private:
 
     [[nodiscard]] FlowUnknowns unknowns() const {
         FlowUnknowns unknowns{{}, conditions_.closed};
-        for (Vertex v : numbering().vertex) {
-            for (bool fixed : conditions_.fixed[v]) unknowns.fixed.push_back(fixed ? 1 : 0);
+        for_each_unknown([&](std::size_t, Vertex v, bool further) {
+            for (bool fixed : conditions_.fixed[v]) unknowns.fixed.push_back(fixed || further ? 1 : 0);
             unknowns.fixed.push_back(0);
-        }
+        });
         return unknowns;
     }
 
@@ -198,8 +250,9 @@ private:
         const auto open_pressure = open_pressures(position, options_, boundary_, time);
         const FlowStage stage{current_,         position,  mesh_velocity_,     old,
                               guess_,           material_, conditions_.open,   open_pressure,
-                              options_.gravity, per_time,  options_.convection};
+                              options_.gravity, per_time,  options_.convection, upper()};
         find_shares(position);
+        pull_surfaces(position, at.share, per_time);
         const bool fresh = !solver_.has_matrix();
         assemble(stage, fresh);
         if (fresh) {
@@ -209,7 +262,8 @@ private:
         double left = solver_.size(system_.residual);
         largest_left_ = std::max(largest_left_, left);
         const double wanted = options_.tolerance * largest_left_;
-        for (int pass = 1; left > wanted; ++pass) {
+        const bool is_solution = left <= rounding * solver_.size_of_terms(unknown());  // as it is
+        for (int pass = 1; left > wanted && !is_solution; ++pass) {
             if (pass > options_.most_passes || !std::isfinite(left)) give_up(pass, left / largest_left_);
             add(correction(stage, std::max(margin * wanted / left, per_time > 0 ? forcing : steady_forcing)));
             ++passes_;
@@ -226,6 +280,57 @@ private:
         }
         if (left > 0) error_ = left / largest_left_;
         if (masses_) note_passed(at.weight, position);
+        for (std::size_t s = 0; s < boundary_.liquids.size(); ++s)
+            for (std::size_t i = 0; i < gone_[s].size(); ++i)
+                gone_[s][i] += at.weight * dt_ * guess_.velocity[boundary_.liquids[s].vertices[i]];
+    }
+
+    /// What pulls the surfaces of liquids in a stage; and how far they are behind the flow already, but for what it takes
+    /// them on in this one.
+    void pull_surfaces(const Array<Vertex, Vec3>& position, double share, double per_time) {
+        const std::size_t count = boundary_.liquids.size();
+        tensions_.clear();
+        gone_.resize(count);
+        behind_.resize(count);
+        for (std::size_t s = 0; s < count; ++s) {
+            const LiquidSurface& liquid = boundary_.liquids[s];
+            tensions_.push_back(surface_tension(liquid, position));
+            gone_[s].resize(liquid.vertices.size());
+            behind_[s] = gone_[s];
+            for (std::size_t i = 0; i < liquid.vertices.size() && per_time > 0; ++i)
+                behind_[s][i] -= share * dt_ * mesh_velocity_[liquid.vertices[i]];
+        }
+    }
+
+    /// Of the tension, with what it gains as the surfaces go on.
+    void add_tension(const FlowStage& stage, bool derivative) {
+        const double time = stage.per_time > 0 ? 1 / stage.per_time : 0;
+        const auto row_of = [&](Vertex v) { return static_cast<std::size_t>(numbering().row[v] - rows().first_row); };
+        for (std::size_t s = 0; s < tensions_.size(); ++s) {
+            const std::vector<Vertex>& vertices = boundary_.liquids[s].vertices;
+            const SurfaceTension& acts = tensions_[s];
+            const auto add = [&](std::size_t i, const Vec3& pull) {
+                const std::size_t row = row_of(vertices[i]);  // huge if before the first
+                for (int m = 0; m < 3 && row < rows().count(); ++m)
+                    system_.residual[block_size * row + static_cast<std::size_t>(m)] -= pull[m];
+            };
+            for (std::size_t i = 0; i < vertices.size(); ++i) add(i, acts.force[i]);
+            for (const auto& [i, j, stiffness] : acts.bonds) {
+                const Vec3 further = behind_[s][j] + time * guess_.velocity[vertices[j]];
+                add(i, -stiffness * dot(acts.normal[j], further) * acts.normal[i]);
+                if (!derivative || row_of(vertices[i]) >= rows().count()) continue;
+                double* const block = system_.block(place_of(row_of(vertices[i]), numbering().row[vertices[j]]));
+                for (int c = 0; c < 3; ++c)
+                    for (int m = 0; m < 3; ++m)
+                        block[block_size * static_cast<std::size_t>(c) + static_cast<std::size_t>(m)] +=
+                            time * stiffness * acts.normal[i][m] * acts.normal[j][c];
+            }
+        }
+    }
+    /// Of a column in an owned row.
+    [[nodiscard]] std::size_t place_of(std::size_t row, PetscInt column) const {
+        const auto begin = rows().column.begin() + rows().begin[row], end = rows().column.begin() + rows().begin[row + 1];
+        return static_cast<std::size_t>(std::lower_bound(begin, end, column) - rows().column.begin());
     }
 
     /// Where the density depends on the temperature.
@@ -234,7 +339,7 @@ private:
             if (material_[r].densities.empty()) continue;
             expanding_ = r;
             const Array<Vertex, double>& end = material_[r].densities;
-            masses_.emplace(before_, current_, flow_cells(current_, options_), start_.density.empty() ? end : start_.density,
+            masses_.emplace(before_, current_, cells_, start_.density.empty() ? end : start_.density,
                             end, dt_);
             if (!steady()) material_[r].density_rate = masses_->density_rate();
             gained_ = Array<Vertex, double>(end.size(), 0.0);
@@ -292,6 +397,7 @@ private:
             current_, blocks_,
             [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
             system_, ranks_.watch);
+        add_tension(stage, derivative);
         for (std::size_t r = 0; r < rows().count() && masses_; ++r)
             system_.residual[block_size * r + 3] += expansion_[vertex_of(r)];
         reaction_ = system_.residual;
@@ -305,29 +411,30 @@ private:
         for (std::size_t r = 0; r < rows().count(); ++r) mine += system_.residual[block_size * r + 3];
         MPI_Allreduce(&mine, &net, 1, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
         for (std::size_t r = 0; r < rows().count(); ++r)
-            system_.residual[block_size * r + 3] -= net * share_of_volume_[vertex_of(r)];
+            system_.residual[block_size * r + 3] -= net * share_of_volume_[static_cast<std::size_t>(rows().first_row) + r];
     }
 
     void find_shares(const Array<Vertex, Vec3>& position) {
         if (!conditions_.closed) return;
-        share_of_volume_ = Array<Vertex, double>(position.size(), 0.0);
+        share_of_volume_.assign(numbering().vertex.size(), 0.0);
         double total = 0;
-        for_each_cell(flow_cells(current_, options_), [&](const auto& cell) {
+        for_each_cell(cells_, [&](const auto& cell) {
             const auto vertices = cell_vertices(current_, cell);
             const double part = total_volume(cell_points(corners(position, current_, cell)));
             total += part;
-            for (Vertex v : vertices) share_of_volume_[v] += part / static_cast<double>(vertices.size());
+            for (Vertex v : vertices)
+                share_of_volume_[as_size(numbering().row_at(v, cell_region(current_, cell)))] +=
+                    part / static_cast<double>(vertices.size());
         });
         for (double& share : share_of_volume_) share /= total;
     }
 
     void add(const std::vector<double>& correction) {
-        for (std::size_t r = 0; r < numbering().vertex.size(); ++r) {
-            const Vertex v = numbering().vertex[r];
+        for_each_unknown([&](std::size_t r, Vertex v, bool further) {
             const double* const gained = correction.data() + block_size * r;
-            guess_.velocity[v] += Vec3{gained[0], gained[1], gained[2]};
-            guess_.pressure[v] += gained[3];
-        }
+            if (!further) guess_.velocity[v] += Vec3{gained[0], gained[1], gained[2]};
+            pressure_of(v, further) += gained[3];
+        });
     }
 
     void take_matrix(const FlowStage& stage) {
@@ -341,7 +448,7 @@ private:
         try {
             return solver_.solve(system_.residual, tolerance);
         } catch (const SolverError&) {
-            if (triangular_) throw;
+            if (triangular_ || !upper().empty()) throw;
         }
         triangular_ = true;
         assemble(stage, true);
@@ -353,16 +460,16 @@ private:
     [[nodiscard]] std::vector<double> unknown() const {
         std::vector<double> all;
         all.reserve(block_size * numbering().vertex.size());
-        for (Vertex v : numbering().vertex) {
-            const Vec3& u = guess_.velocity[v];
-            all.insert(all.end(), {u.x, u.y, u.z, guess_.pressure[v]});
-        }
+        for_each_unknown([&](std::size_t, Vertex v, bool further) {
+            const Vec3 u = further ? Vec3{} : guess_.velocity[v];
+            all.insert(all.end(), {u.x, u.y, u.z, pressure_of(v, further)});
+        });
         return all;
     }
 
     /// Is the system a large one of viscosity alone, in next to all cells?
     [[nodiscard]] bool is_viscous(const FlowStage& stage) const {
-        if (numbering().rows() < many_vertices) return false;
+        if (numbering().rows() < many_vertices || !upper().empty()) return false;
         std::array<double, 2> mine = {0, 0}, all = {0, 0};  // cells, and those where viscosity rules
         for_each_cell(blocks_.pattern.cells, [&](const auto& cell) {
             const FlowMaterial& material = material_[cell_region(current_, cell)];
@@ -441,8 +548,9 @@ private:
         MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM,
                       ranks_.communicator);
         Array<Vertex, Vec3> reaction(current_.position.size());
-        for (std::size_t r = 0; r < numbering().vertex.size(); ++r)
-            reaction[numbering().vertex[r]] = {all[3 * r], all[3 * r + 1], all[3 * r + 2]};
+        for_each_unknown([&](std::size_t r, Vertex v, bool further) {
+            if (!further) reaction[v] = {all[3 * r], all[3 * r + 1], all[3 * r + 2]};
+        });
         return reaction;
     }
 
@@ -450,10 +558,10 @@ private:
         if (steady()) return 0;
         const std::array<Array<Vertex, double>, 6> none;
         const FlowStage stage{current_, current_.position, mesh_velocity_, guess_.velocity, guess_, material_,
-                              conditions_.open, none, {}, 0, true};
+                              conditions_.open, none, {}, 0, true, upper()};
         double most = 0, all = 0;
-        for_each_cell(blocks_.pattern.cells,
-                      [&](const auto& cell) { most = std::max(most, crossing_rate(stage, cell)); });
+        for (const Cells* cells : {&blocks_.pattern.cells, &blocks_.pattern.upper})
+            for_each_cell(*cells, [&](const auto& cell) { most = std::max(most, crossing_rate(stage, cell)); });
         MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, ranks_.communicator);
         return dt_ * all;
     }
@@ -463,6 +571,7 @@ private:
     const FlowOptions& options_;
     const FlowState& start_;
     double t_, dt_;
+    Cells cells_;
     BlockPattern blocks_;
     FlowBoundary boundary_;
     FlowConditions conditions_;
@@ -475,7 +584,11 @@ private:
     FlowState guess_;
     BlockSystem system_;
     std::vector<double> reaction_;  // the residual of the last assembly, as it is
-    Array<Vertex, double> share_of_volume_;
+    std::vector<double> share_of_volume_;  // per row
+    // Of the surfaces of liquids, in the order of the boundary's:
+    std::vector<SurfaceTension> tensions_;        // in this stage
+    std::vector<std::vector<Vec3>> gone_;         // [m] with the flow, in the stages so far
+    std::vector<std::vector<Vec3>> behind_;       // [m] of that the mesh has not done
     Array<Vertex, Vec3> mesh_velocity_;
     FlowSolver solver_;
     bool triangular_ = false;  // the preconditioner

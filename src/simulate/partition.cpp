@@ -2,9 +2,12 @@
 //   [Morton 1966] A computer oriented geodetic data base and a new technique in file sequencing. IBM.
 #include "simulate/partition.h"
 
+#include <kropla/base/error.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <sstream>
 
 namespace kropla {
 namespace {
@@ -61,16 +64,45 @@ std::vector<Vertex> vertices_of(const Mesh& mesh, const Cells& cells) {
 
 }  // namespace
 
-Numbering number_vertices(const Mesh& mesh, const Cells& cells, int ranks) {
-    Numbering numbering{Array<Vertex, int>(mesh.position.size(), -1), vertices_of(mesh, cells), {}};
-    const Frame frame = frame_of(mesh, numbering.vertex);
+UpperSides upper_sides(const Mesh& mesh, const Cells& cells) {
+    UpperSides lowest(mesh.position.size()), highest(mesh.position.size());
+    const auto for_each_corner = [&](const auto& visit) {
+        for_each_cell(cells, [&](const auto& cell) {
+            for (Vertex v : cell_vertices(mesh, cell)) visit(v, cell_region(mesh, cell));
+        });
+    };
+    for_each_corner([&](Vertex v, Region r) {
+        if (!lowest[v].exists() || r < lowest[v]) lowest[v] = r;
+        if (!highest[v].exists() || highest[v] < r) highest[v] = r;
+    });
+    for_each_corner([&](Vertex v, Region r) {
+        if (r == lowest[v] || r == highest[v]) return;
+        const Vec3& x = mesh.position[v];
+        std::ostringstream message;
+        message << "three regions meet at (" << x.x << ", " << x.y << ", " << x.z << ") m: two can";
+        throw CaseError(message.str());
+    });
+    bool meet = false;
+    for (Vertex v : highest.indices()) {
+        if (highest[v] == lowest[v]) highest[v] = {};
+        else meet = true;
+    }
+    return meet ? highest : UpperSides{};
+}
+
+Numbering number_vertices(const Mesh& mesh, const Cells& cells, int ranks, UpperSides upper) {
+    Numbering numbering{Array<Vertex, int>(mesh.position.size(), -1), {}, {}, std::move(upper)};
+    const std::vector<Vertex> vertices = vertices_of(mesh, cells);
+    const Frame frame = frame_of(mesh, vertices);
     std::vector<std::pair<std::uint64_t, Vertex>> order;
-    order.reserve(numbering.vertex.size());
-    for (Vertex v : numbering.vertex) order.emplace_back(morton_key(frame, mesh.position[v]), v);
+    order.reserve(vertices.size());
+    for (Vertex v : vertices) order.emplace_back(morton_key(frame, mesh.position[v]), v);
     std::sort(order.begin(), order.end());
-    for (std::size_t r = 0; r < order.size(); ++r) {
-        numbering.vertex[r] = order[r].second;
-        numbering.row[order[r].second] = static_cast<int>(r);
+    numbering.vertex.reserve(vertices.size());
+    for (const auto& [key, v] : order) {
+        numbering.row[v] = numbering.rows();
+        numbering.vertex.push_back(v);
+        if (!numbering.upper.empty() && numbering.upper[v].exists()) numbering.vertex.push_back(v);
     }
     for (int rank = 0; rank <= ranks; ++rank) {
         numbering.first_row.push_back(static_cast<int>(std::int64_t{numbering.rows()} * rank / ranks));
@@ -80,7 +112,10 @@ Numbering number_vertices(const Mesh& mesh, const Cells& cells, int ranks) {
 
 Cells cells_of_rank(const Mesh& mesh, const Cells& cells, const Numbering& numbering, int rank) {
     const auto is_mine = [&](const auto& cell) {
-        const auto owned = [&](Vertex v) { return numbering.owns(rank, numbering.row[v]); };
+        const Region region = cell_region(mesh, cell);
+        const auto owned = [&](Vertex v) {
+            return numbering.owns(rank, numbering.row[v]) || numbering.owns(rank, numbering.row_at(v, region));
+        };
         return std::ranges::any_of(cell_vertices(mesh, cell), owned);
     };
     Cells mine;

@@ -3,7 +3,9 @@
 #include "base/for_all.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -18,9 +20,9 @@ CellsAtRows<n> cells_at_rows(const Mesh& mesh, const std::vector<Name>& cells, c
     CellsAtRows<n> at{std::vector<std::size_t>(rows + 1, 0), {}};
     const auto for_each_corner = [&](const auto& visit) {
         for (std::size_t c = 0; c < cells.size(); ++c) {
-            const auto vertices = cell_vertices(mesh, cells[c]);
+            const std::array<int, n> row = corner_rows<n>(numbering, mesh, cells[c]);
             for (std::size_t i = 0; i < n; ++i) {
-                const auto r = static_cast<std::size_t>(numbering.row[vertices[i]] - first_row);  // huge if before them
+                const auto r = static_cast<std::size_t>(row[i] - first_row);  // huge if before them, or none
                 if (r < rows) visit(r, c, i);
             }
         }
@@ -52,6 +54,8 @@ public:
         fresh_.clear();
         number_corners(pattern_.cells.tets, pattern_.tets);
         number_corners(pattern_.cells.prisms, pattern_.prisms);
+        number_corners(pattern_.upper.tets, pattern_.upper_tets);
+        number_corners(pattern_.upper.prisms, pattern_.upper_prisms);
         place_.resize(fresh_.size());
         sorted_ = fresh_;
         std::ranges::sort(sorted_);
@@ -59,6 +63,8 @@ public:
             place_[order_[static_cast<std::size_t>(sorted_[k])]] = static_cast<std::uint16_t>(k);
         place_corners(pattern_.tets);
         place_corners(pattern_.prisms);
+        place_corners(pattern_.upper_tets);
+        place_corners(pattern_.upper_prisms);
         columns_.column.insert(columns_.column.end(), sorted_.begin(), sorted_.end());
         columns_.end.push_back(static_cast<PetscInt>(columns_.column.size()));
     }
@@ -71,9 +77,10 @@ private:
     template <std::size_t n, class Name>
     void number_corners(const std::vector<Name>& cells, CellsAtRows<n>& at) {
         for (std::size_t k = at.begin[row_]; k < at.begin[row_ + 1]; ++k) {
-            const auto vertices = cell_vertices(mesh_, cells[at.cells[k].cell]);
+            const std::array<int, n> row = corner_rows<n>(pattern_.numbering, mesh_, cells[at.cells[k].cell]);
             for (std::size_t i = 0; i < n; ++i) {
-                const int column = pattern_.numbering.row[vertices[i]];
+                const int column = row[i];
+                if (column < 0) continue;
                 const auto c = static_cast<std::size_t>(column);
                 if (found_in_[c] != row_) {
                     found_in_[c] = row_;
@@ -101,17 +108,35 @@ private:
     Columns columns_;
 };
 
+/// Takes the cells at upper sides out of the others.
+void part_upper(const Mesh& mesh, Pattern& pattern) {
+    const auto is_upper = [&](const auto& cell) {
+        return std::ranges::any_of(cell_vertices(mesh, cell), [&](Vertex v) {
+            return pattern.numbering.is_upper(v, cell_region(mesh, cell));
+        });
+    };
+    const auto part = [&](auto& cells, auto& upper) {
+        std::ranges::copy_if(cells, std::back_inserter(upper), is_upper);
+        std::erase_if(cells, is_upper);
+    };
+    part(pattern.cells.tets, pattern.upper.tets);
+    part(pattern.cells.prisms, pattern.upper.prisms);
+}
+
 }  // namespace
 
-Pattern make_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks) {
+Pattern make_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks, UpperSides upper) {
     Pattern pattern;
-    pattern.numbering = number_vertices(mesh, cells, ranks.count);
+    pattern.numbering = number_vertices(mesh, cells, ranks.count, std::move(upper));
     pattern.cells = ranks.count == 1 ? cells : cells_of_rank(mesh, cells, pattern.numbering, ranks.rank);
+    if (!pattern.numbering.upper.empty()) part_upper(mesh, pattern);
     const auto rank = static_cast<std::size_t>(ranks.rank);
     const int first = pattern.numbering.first_row[rank];
     const auto rows = static_cast<std::size_t>(pattern.numbering.first_row[rank + 1] - first);
     pattern.tets = cells_at_rows<4>(mesh, pattern.cells.tets, pattern.numbering, first, rows);
     pattern.prisms = cells_at_rows<6>(mesh, pattern.cells.prisms, pattern.numbering, first, rows);
+    pattern.upper_tets = cells_at_rows<8>(mesh, pattern.upper.tets, pattern.numbering, first, rows);
+    pattern.upper_prisms = cells_at_rows<12>(mesh, pattern.upper.prisms, pattern.numbering, first, rows);
 
     const std::size_t part_rows = std::max(least_rows, (rows + parts - 1) / parts);
     std::vector<Columns> columns((rows + part_rows - 1) / part_rows);

@@ -6,6 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace kropla {
@@ -32,13 +35,32 @@ struct CellsAtRows {
 /// know of a connectivity before anything is assembled on it.
 struct Pattern {
     Numbering numbering;
-    Cells cells;      // those with an unknown of the rank
+    Cells cells;      // those with an unknown of the rank, but for
+    Cells upper;      // those at the upper side of an interface, where there are sides
     SparseRows rows;  // unknowns that share a cell
     CellsAtRows<4> tets;
     CellsAtRows<6> prisms;
+    // Of `upper`, each corner twice: the second time with its further row, if it has one.
+    CellsAtRows<8> upper_tets;
+    CellsAtRows<12> upper_prisms;
 };
 
-/// `cells` are all of them, the same on each rank.
-[[nodiscard]] Pattern make_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks);
+/// `cells` are all of them, the same on each rank. With `upper`, vertices of interfaces have a further row.
+[[nodiscard]] Pattern make_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks, UpperSides upper = {});
+
+/// The rows of a cell's corners; with m twice their number, then the further ones, -1 where there is none.
+template <std::size_t m, class Name>
+[[nodiscard]] std::array<int, m> corner_rows(const Numbering& numbering, const Mesh& mesh, const Name& cell) {
+    const auto vertices = cell_vertices(mesh, cell);
+    constexpr std::size_t n = std::tuple_size_v<std::remove_cv_t<decltype(vertices)>>;
+    static_assert(m == n || m == 2 * n);
+    std::array<int, m> rows;
+    for (std::size_t i = 0; i < n; ++i) {
+        rows[i] = numbering.row[vertices[i]];
+        if constexpr (m > n)
+            rows[n + i] = numbering.is_upper(vertices[i], cell_region(mesh, cell)) ? rows[i] + 1 : -1;
+    }
+    return rows;
+}
 
 }  // namespace kropla

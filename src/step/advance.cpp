@@ -90,7 +90,8 @@ std::optional<Refusal> solve_step(MovedAttempt& moved, const Fields::Copy& begin
             return Refusal{.why = refused->why, .limiting = {}, .advised_dt = refused->advised_dt};
         begin.put_back();
         const Stopwatch watch(done.mesh_seconds, &done.mesh_cpu_seconds);
-        moved.move_again(std::get<BodiesMoved>(answer).places);
+        const auto& [places, courses] = std::get<BodiesMoved>(answer);
+        moved.move_again(places, courses);
         if (auto refusal = moved.refusal()) return refusal;
     }
     return Refusal{.why = "after " + std::to_string(options.rounds) + " rounds the solver still says that bodies go elsewhere",
@@ -111,8 +112,8 @@ std::variant<RemeshedAttempt, Refusal> attempt_step(MovingMesh& moving, Fields& 
         const Fields::Copy on_refined = refined ? fields.copy() : Fields::Copy{};
         MovedAttempt moved = [&] {
             const Stopwatch watch(done.mesh_seconds, &done.mesh_cpu_seconds);
-            return move_bodies(std::move(attempt), end,  // 2.3, 2.4
-                               options.expected ? options.expected(end) : std::vector<BodyPlace>{});
+            const BodiesMoved expected = options.expected ? options.expected(attempt.before(), end) : BodiesMoved{};
+            return move_bodies(std::move(attempt), end, expected.places, expected.courses);  // 2.3, 2.4
         }();
         auto refusal = moved.refusal();
         if (!refusal) refusal = solve_step(moved, refined ? on_refined : start, solve, options, done);  // 2.5

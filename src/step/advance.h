@@ -26,7 +26,8 @@ struct NotSolved { ///< it did not converge, or dt is too large for it
     double advised_dt = 0;  // [s] that would do; 0: none is known
 };
 struct BodiesMoved {  ///< these bodies really went there: the mesh is to follow them, and to be solved on again
-    std::vector<BodyPlace> places;
+    std::vector<BodyPlace> places;         // of those that move rigidly
+    std::vector<BodyCourse> courses = {};  // of those that deform
 };
 using Answer = std::variant<Solved, NotSolved, BodiesMoved>;
 /// May throw: then the step did not happen. Empty: nothing is solved for.
@@ -39,7 +40,8 @@ struct AdvanceOptions {
     double least_dt = 0;     // [s]: if less would be left of dt, the step cannot be done; 0: a thousandth of dt
     int rounds = 20;         // of a solver that says where bodies went
     /// Where bodies of which the solver says so are expected at `end` [s]: the first round begins with that.
-    std::function<std::vector<BodyPlace>(double end)> expected = {};
+    /// `before` is the mesh of the step at its begin, on which the fields are then.
+    std::function<BodiesMoved(const Mesh& before, double end)> expected = {};
     std::vector<Content> contents = {};
     /// Asked when all is done and can still be taken back, with the mesh that is to be the reference; may throw.
     std::function<void(const Mesh&)> last_look = {};

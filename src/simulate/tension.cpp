@@ -1,0 +1,124 @@
+#include "simulate/tension.h"
+
+#include <algorithm>
+
+namespace kropla {
+namespace {
+
+std::size_t place_of(std::span<const Vertex> vertices, Vertex v) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
+}
+
+/// A triangle, seen from its corners.
+struct Facet {
+    std::array<std::size_t, 3> at;     // places of its corners
+    Vec3 area;                         // vector [m^2]
+    std::array<Vec3, 3> area_gradient;  // A grad_S phi_i [m]: along the plane, from the opposite edge to the corner
+};
+
+Facet facet_of(std::span<const Vertex> vertices, const std::array<Vertex, 3>& corner, const Array<Vertex, Vec3>& position) {
+    Facet facet;
+    std::array<Vec3, 3> x;
+    for (std::size_t i = 0; i < 3; ++i) {
+        facet.at[i] = place_of(vertices, corner[i]);
+        x[i] = position[corner[i]];
+    }
+    facet.area = 0.5 * cross(x[1] - x[0], x[2] - x[0]);
+    const Vec3 unit = facet.area / norm(facet.area);
+    for (std::size_t i = 0; i < 3; ++i) facet.area_gradient[i] = 0.5 * cross(unit, x[(i + 2) % 3] - x[(i + 1) % 3]);
+    return facet;
+}
+
+/// Adds up bonds between the same two vertices.
+void sum_up(std::vector<SurfaceTension::Bond>& bonds) {
+    std::ranges::stable_sort(bonds, [](const auto& a, const auto& b) {
+        return a.row != b.row ? a.row < b.row : a.column < b.column;
+    });
+    std::size_t count = 0;
+    for (const SurfaceTension::Bond& bond : bonds) {
+        if (count > 0 && bonds[count - 1].row == bond.row && bonds[count - 1].column == bond.column)
+            bonds[count - 1].stiffness += bond.stiffness;
+        else bonds[count++] = bond;
+    }
+    bonds.resize(count);
+}
+
+/// The x of a x = b, a symmetric by its rows.
+Vec3 solved(const std::array<Vec3, 3>& a, const Vec3& b) {
+    const Vec3 yz = cross(a[1], a[2]), zx = cross(a[2], a[0]), xy = cross(a[0], a[1]);
+    return (b.x * yz + b.y * zx + b.z * xy) / dot(a[0], yz);
+}
+
+/// Makes forces have neither a sum nor a moment, by what a rigid motion does to masses as large as the shares.
+void take_off_all_together(const std::vector<Vec3>& place, const std::vector<double>& share, std::vector<Vec3>& force) {
+    Vec3 sum, moment, middle;
+    double mass = 0;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+        sum += force[i];
+        middle += share[i] * place[i];
+        mass += share[i];
+    }
+    middle = middle / mass;
+    std::array<Vec3, 3> inertia = {};
+    for (std::size_t i = 0; i < place.size(); ++i) {
+        const Vec3 r = place[i] - middle;
+        moment += cross(r, force[i] - share[i] / mass * sum);
+        for (int m = 0; m < 3; ++m) {
+            inertia[static_cast<std::size_t>(m)] -= share[i] * r[m] * r;
+            inertia[static_cast<std::size_t>(m)][m] += share[i] * squared_norm(r);
+        }
+    }
+    const Vec3 turning = solved(inertia, moment);
+    for (std::size_t i = 0; i < place.size(); ++i)
+        force[i] -= share[i] * (sum / mass + cross(turning, place[i] - middle));
+}
+
+}  // namespace
+
+std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets, std::span<const Vertex> vertices,
+                                  const Array<Vertex, Vec3>& position) {
+    std::vector<Vec3> normal(vertices.size());
+    for (const auto& [a, b, c] : facets) {
+        const Vec3 area = cross(position[b] - position[a], position[c] - position[a]);
+        for (Vertex v : {a, b, c}) normal[place_of(vertices, v)] += area;
+    }
+    for (Vec3& n : normal) n = n / norm(n);
+    return normal;
+}
+
+SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex, Vec3>& position) {
+    const std::size_t count = surface.vertices.size();
+    SurfaceTension acts{std::vector<Vec3>(count), surface_normals(surface.facets, surface.vertices, position), {}, 0};
+    std::vector<Vec3> pull(count), along(count);  // of the whole tension; of its gradient
+    std::vector<double> share(count, 0);          // of the area
+    for (const auto& corners : surface.facets) {
+        const Facet facet = facet_of(surface.vertices, corners, position);
+        const double area = norm(facet.area);
+        double tension = 0;
+        Vec3 gradient;  // times the area
+        for (std::size_t i = 0; i < 3; ++i) {
+            tension += surface.tension[facet.at[i]] / 3;
+            gradient += surface.tension[facet.at[i]] * facet.area_gradient[i];
+        }
+        acts.area += area;
+        for (std::size_t i = 0; i < 3; ++i) {
+            pull[facet.at[i]] -= tension * facet.area_gradient[i];
+            along[facet.at[i]] += gradient / 3;
+            share[facet.at[i]] += area / 3;
+            for (std::size_t j = 0; j < 3; ++j)
+                acts.bonds.push_back({facet.at[i], facet.at[j],
+                                      tension / area * dot(facet.area_gradient[i], facet.area_gradient[j])});
+        }
+    }
+    sum_up(acts.bonds);
+    std::vector<Vec3> place;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3& n = acts.normal[i];
+        acts.force[i] = dot(pull[i], n) * n + along[i] - dot(along[i], n) * n;
+        place.push_back(position[surface.vertices[i]]);
+    }
+    take_off_all_together(place, share, acts.force);
+    return acts;
+}
+
+}  // namespace kropla

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "simulate/cells.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace kropla {
+
+// Surface tension sigma, as the weak form of the surface's divergence has it, integral(sigma div_S v): a vertex i of a
+// surface of triangles is pulled by - sum of sigma A grad_S phi_i over the triangles around. Of that only the part along
+// the normal is taken, that of what the volume gains with the vertex, to which the pressure's jump is opposed. So a
+// surface on which both are in balance at each vertex rests, wherever its vertices are along it. Along the surface pulls
+// the gradient of sigma, integral(phi_i grad_S sigma) (Marangoni). What is left of all together, as a force and as a
+// moment, is taken off as a rigid motion would: a closed surface neither pulls nor turns itself.
+//
+// Where the surface goes on by d against the places it is reckoned for, the tension follows in linear terms,
+// by integral(sigma grad_S (d.n) . grad_S (v.n)): symmetric and positive, which makes it stable for any time step.
+//   [Dziuk 1991] An algorithm for evolutionary surfaces. Numer. Math. 58.
+//   [Baensch 2001] Finite element discretization of the Navier-Stokes equations with a free capillary surface.
+//     Numer. Math. 88.
+//   [Barrett, Garcke, Nuernberg 2008] On the parametric approximation of motion by mean curvature. J. Comput. Phys. 227:
+//     only the normal's part counts.
+
+/// The surface of a liquid.
+struct LiquidSurface {
+    Region body;
+    std::vector<std::array<Vertex, 3>> facets;  // normals out of the body
+    std::vector<Vertex> vertices;               // ascending
+    std::vector<double> tension;                // [N/m] at them
+};
+
+/// What acts on a surface at one set of places.
+struct SurfaceTension {
+    /// How tightly the normal parts of two vertices are bound [N/m].
+    struct Bond {
+        std::size_t row, column;  // places in LiquidSurface::vertices
+        double stiffness;
+    };
+    std::vector<Vec3> force;   // [N] per vertex
+    std::vector<Vec3> normal;  // unit, out of the body
+    std::vector<Bond> bonds;   // by rows, each pair once; both ways
+    double area = 0;           // [m^2]
+};
+[[nodiscard]] SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex, Vec3>& position);
+
+/// Unit normals at the vertices, along what the volume gains with them.
+[[nodiscard]] std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets,
+                                                std::span<const Vertex> vertices, const Array<Vertex, Vec3>& position);
+
+}  // namespace kropla
