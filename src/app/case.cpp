@@ -160,11 +160,12 @@ toml::table parse(std::string_view text, const std::string& name) {
 void refuse_with_deforming(const CaseTable& file, const Case& it) {
     const auto deforms = std::ranges::find_if(it.domain.bodies, [](const Body& body) { return bool(body.deformation); });
     if (deforms == it.domain.bodies.end()) return;
-    const std::string why = fmt::format("is solved for around bodies that move rigidly; {} deforms "
-                                        "(motion.kind = \"field\")", named(*deforms));
+    const std::string does = deforms->shape.cut ? "reaches through faces of the box" : "deforms (motion.kind = \"field\")";
+    const std::string why = fmt::format("is solved for around bodies that move rigidly{}; {} {}",
+                                        deforms->shape.cut ? ", wholly in the box" : "", named(*deforms), does);
     for (const char* key : {"heat", "species", "flow"})
         if (file.has(key)) file.refuse(key, why);
-    if (it.quality.paper) file.table("quality").refuse("method", fmt::format("\"paper\" moves rigid bodies; {} deforms", named(*deforms)));
+    if (it.quality.paper) file.table("quality").refuse("method", fmt::format("\"paper\" moves rigid bodies; {} {}", named(*deforms), deforms->shape.cut ? does : "deforms"));
 }
 
 }  // namespace
