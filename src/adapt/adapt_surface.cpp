@@ -29,6 +29,11 @@ public:
         for (const auto& [a, b, c] : triangles)
             for (const Edge e : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
                 if (e.a < e.b) edges_.push_back(e);
+        std::vector<Edge> known = edges_;  // the others are of one triangle, which sees them the other way round
+        std::ranges::sort(known, comes_before);
+        for (const auto& [a, b, c] : triangles)
+            for (const Edge e : {Edge{b, a}, Edge{c, b}, Edge{a, c}})
+                if (e.a < e.b && !std::ranges::binary_search(known, e, comes_before)) edges_.push_back(e);
     }
 
     void adapt_sizes() {
@@ -62,8 +67,7 @@ public:
                 edges_.push_back({std::min(a, v), std::max(a, v)});
             }
         }
-        const auto order = [](Edge a, Edge b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); };
-        std::ranges::sort(edges_, order);
+        std::ranges::sort(edges_, comes_before);
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
     }
 
@@ -111,6 +115,7 @@ public:
     Changes changes;
 
 private:
+    static bool comes_before(Edge a, Edge b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); }
     enum Demand { passable, better };
 
     [[nodiscard]] double ratio(Edge e) const {
@@ -192,9 +197,12 @@ private:
 
 bool has_wrong_size(const Mesh& mesh, const BodySurface& surface, const Array<Vertex, double>& size,
                     const AdaptOptions& options) {
+    const auto is_wrong = [&](Vertex a, Vertex b) {
+        const double ratio = distance(mesh.position[a], mesh.position[b]) / ((size[a] + size[b]) / 2);
+        return ratio < options.collapse_below || ratio > options.split_above;
+    };
     return std::ranges::any_of(surface.triangles, [&](const std::array<Vertex, 3>& t) {
-        const double ratio = distance(mesh.position[t[0]], mesh.position[t[1]]) / ((size[t[0]] + size[t[1]]) / 2);
-        return ratio < options.collapse_below || ratio > options.split_above;  // each edge is the first of a triangle at it
+        return is_wrong(t[0], t[1]) || is_wrong(t[1], t[2]) || is_wrong(t[2], t[0]);
     });
 }
 

@@ -157,29 +157,46 @@ Vec3 spread(std::span<const Travel> travels, const Snapshot& at, const Vec3& x) 
     return u;
 }
 
-/// Puts the bodies' vertices where they go with the body.
-void place_bodies(const Mesh& mesh, std::span<const Travel> travels, std::span<const std::vector<Vertex>> bodies,
-                  ZoneMotion& motion) {
+/// Of a vector at `x` what is along the faces of the box on which `x` lies, exactly.
+Vec3 along_faces(const Box& box, const Vec3& x, Vec3 vector) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (x[axis] == box.min[axis] || x[axis] == box.max[axis]) vector[axis] = 0;
+    return vector;
+}
+
+/// Puts the bodies' vertices where they go with the body; those of a deforming one that are on faces of the box, along these.
+void place_bodies(const Mesh& mesh, const Box& box, std::span<const Travel> travels,
+                  std::span<const std::vector<Vertex>> bodies, ZoneMotion& motion) {
     motion.bodies.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i)
         for (Vertex v : bodies[i]) {
             motion.bodies.push_back(v);
             motion.moves[v] = ZoneMotion::with_body;
-            motion.place[v] = travels[i].taken_along(mesh.position[v]);
+            const Vec3& from = mesh.position[v];
+            motion.place[v] = travels[i].taken_along(from);
+            if (travels[i].deformation != nullptr)
+                for (int axis = 0; axis < 3; ++axis)
+                    if (from[axis] == box.min[axis] || from[axis] == box.max[axis]) motion.place[v][axis] = from[axis];
         }
 }
 
 /// The vertices of a surface went with the flow; what was flat between them has become curved. Shifts them along their
 /// normals by the volume that is between the flat triangles and the curved ones, so that the volume inside becomes what the
 /// flow makes of it, place by place: to the fourth power of the edges, not to the second. The curved triangle is the
-/// quadratic one through the images of the middles of its edges.
-void keep_with_flow(const Mesh& mesh, const Travel& travel, const BodySurface& surface, ZoneMotion& motion) {
+/// quadratic one through the images of the middles of its edges. A vertex on a face of the box is shifted along the face; what
+/// the flow takes through the face does not count as curved.
+void keep_with_flow(const Mesh& mesh, const Box& box, const Travel& travel, const BodySurface& surface, ZoneMotion& motion) {
     const auto number = [&](Vertex v) {
         return static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
     };
+    const auto gone = [&](Vertex v) {  // where the flow alone takes it
+        const Vec3& from = mesh.position[v];
+        return along_faces(box, from, {1, 1, 1}) == Vec3{1, 1, 1} ? motion.place[v] : travel.taken_along(from);
+    };
     const auto rise = [&](Vertex a, Vertex b) {  // of the middle of an edge, over the middle of its ends
-        const Vec3 image = (*travel.deformation)(0.5 * (mesh.position[a] + mesh.position[b]), travel.start, travel.end);
-        return image - 0.5 * (motion.place[a] + motion.place[b]);
+        const Vec3 middle = 0.5 * (mesh.position[a] + mesh.position[b]);
+        const Vec3 image = (*travel.deformation)(middle, travel.start, travel.end);
+        return along_faces(box, middle, image - 0.5 * (gone(a) + gone(b)));
     };
     std::vector<Vec3> normal(surface.vertices.size());  // times twice the area around
     std::vector<double> missing(surface.vertices.size(), 0);
@@ -197,8 +214,11 @@ void keep_with_flow(const Mesh& mesh, const Travel& travel, const BodySurface& s
             missing[number(v)] += of_triangle[t] / 3;
         }
     }
-    for (std::size_t i = 0; i < surface.vertices.size(); ++i)
-        motion.place[surface.vertices[i]] += 6 * missing[i] / squared_norm(normal[i]) * normal[i];
+    for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+        const Vertex v = surface.vertices[i];
+        const Vec3 free = along_faces(box, mesh.position[v], normal[i]);
+        if (squared_norm(free) > 0) motion.place[v] += 6 * missing[i] / squared_norm(free) * free;
+    }
 }
 
 /// Shifts the vertices of a surface evenly along their normals, until what it holds is what it held before.
@@ -343,9 +363,9 @@ void place_boundary(const Mesh& mesh, const Domain& domain, const MovedBodies& b
     const std::vector<Travel> travelling = travels(domain, at_start, t0, t1);
     reach_out(mesh, travelling, bodies, zone);
     fit(motion, mesh);
-    place_bodies(mesh, travelling, bodies.vertices, motion);
+    place_bodies(mesh, domain.box, travelling, bodies.vertices, motion);
     for (const BodySurface& surface : bodies.deforming) {
-        keep_with_flow(mesh, travelling[surface.body], surface, motion);
+        keep_with_flow(mesh, domain.box, travelling[surface.body], surface, motion);
         if (domain.bodies[surface.body].keeps_volume) keep_volume(mesh, surface, motion);
     }
     const Snapshot at_end = snapshot(domain, t1, bodies.deforming, motion.place, bodies.uneven);

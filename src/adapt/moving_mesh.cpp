@@ -21,7 +21,7 @@ MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& o
     PlannedMotions planned(domain, t);
     for (const BodyPlace& place : places) planned.correct(domain, place, t);
     for (const BodySurface& surface : deforming_surfaces(domain, mesh))  // it is where the mesh has it
-        domain.bodies[surface.body].shape = shape_of(surface, mesh.position);
+        domain.bodies[surface.body].shape = shape_of(surface, mesh.position, domain.box);
     check_fits(domain, mesh, t);
     step_ = std::make_shared<MeshStep>(std::move(domain), std::move(planned), std::move(mesh), t, options);
 }

@@ -18,6 +18,8 @@ void star_of_ball(const Mesh& mesh, const Array<Vertex, Vec3>& places, Vertex v,
 struct Freedom {
     std::array<bool, 3> along = {true, true, true};
     [[nodiscard]] bool none() const { return !along[0] && !along[1] && !along[2]; }
+    [[nodiscard]] bool all() const { return along[0] && along[1] && along[2]; }
+    bool operator==(const Freedom&) const = default;
 };
 [[nodiscard]] Freedom freedom(const Constraint& c);
 [[nodiscard]] Vec3 restricted(const Vec3& a, const Freedom& f);

@@ -35,7 +35,7 @@ void MeshStep::find_deforming() {
     bodies_.deforming = deforming_surfaces(domain_, reference_);
     for (const BodySurface& surface : bodies_.deforming) {
         bodies_.vertices[surface.body] = surface.vertices;
-        domain_.bodies[surface.body].shape = shape_of(surface, reference_.position);
+        domain_.bodies[surface.body].shape = shape_of(surface, reference_.position, domain_.box);
     }
 }
 

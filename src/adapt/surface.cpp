@@ -12,7 +12,9 @@
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace kropla {
 namespace {
@@ -59,22 +61,53 @@ std::vector<Triangle> triangles_at(const Mesh& mesh, std::span<const Vertex> ver
     return all;
 }
 
+/// The ways in which the vertices are shifted together: along `normal`, but along the faces of the box on which they lie. And
+/// a point in all these faces: seen from it, nothing of the volume is under them.
+struct Shift {
+    std::vector<Vec3> ways;
+    Vec3 origin;
+    bool in_faces = false;  // the ways differ
+};
+std::optional<Shift> shift_of(const Mesh& mesh, std::span<const Displaced> moved, const Vec3& normal) {
+    Shift shift{{}, mesh.position[moved.front().vertex]};
+    std::array<bool, 3> held{};
+    for (const Displaced& d : moved) {
+        const Freedom free = free_on_patches(mesh, d.vertex, ball(mesh, d.vertex));
+        shift.ways.push_back(restricted(normal, free));
+        shift.in_faces |= !free.all();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (free.along[as_size(axis)]) continue;
+            const double plane = mesh.position[d.vertex][axis];
+            if (std::exchange(held[as_size(axis)], true) && shift.origin[axis] != plane) return std::nullopt;
+            shift.origin[axis] = plane;
+        }
+    }
+    return shift;
+}
+
 /// Shifts the vertices by as much along `normal` as makes the volume under `after` that under `before`. Returns by how much.
 double keep_volume(const Mesh& mesh, std::span<const Triangle> before, std::span<const Triangle> after, const Vec3& normal,
                    std::vector<Displaced>& moved) {
-    const Vec3 origin = mesh.position[moved.front().vertex];
-    const double wanted = volume_under(before, {mesh, {}}, origin);
+    constexpr double small = 1e-3;  // [-] of an edge; linear along one way, the volume is not quite so along several,
+    constexpr int most = 8;         // so Newton's method takes its steps
+    const auto by = shift_of(mesh, moved, normal);
+    if (!by) return infinity;
+    const double wanted = volume_under(before, {mesh, {}}, by->origin);
     double length = 0;
     for (const auto& [a, b, c] : after) length = std::max(length, distance(mesh.position[a], mesh.position[b]));
+    const double step = by->in_faces ? small * length : length;
+    const auto shifted = [&](double shift) {
+        std::vector<Displaced> places = moved;
+        for (std::size_t i = 0; i < places.size(); ++i) places[i].place += shift * by->ways[i];
+        return places;
+    };
     double sum = 0;
-    for (int i = 0; i < 2; ++i) {  // the second time for rounding
-        const double here = volume_under(after, {mesh, moved}, origin);
-        std::vector<Displaced> further = moved;
-        for (Displaced& d : further) d.place += length * normal;
-        const double slope = (volume_under(after, {mesh, further}, origin) - here) / length;
+    for (int i = 0; i < (by->in_faces ? most : 2); ++i) {  // the second time for rounding
+        const double here = volume_under(after, {mesh, moved}, by->origin);
+        const double slope = (volume_under(after, {mesh, shifted(step)}, by->origin) - here) / step;
         if (!(slope > 0)) return infinity;
         const double shift = (wanted - here) / slope;
-        for (Displaced& d : moved) d.place += shift * normal;
+        moved = shifted(shift);
         sum += shift;
     }
     return sum;
@@ -137,7 +170,11 @@ Replacement carry_out_surface(Mesh& mesh, const SurfaceChange& change, Changes& 
 std::optional<Shell> surface_shell(const Mesh& mesh, Edge edge, Region region) {
     if (!alive(mesh, edge.a) || !alive(mesh, edge.b)) return std::nullopt;
     auto around = shell(mesh, edge);
-    if (!around || !around->closed) return std::nullopt;
+    if (!around) return std::nullopt;
+    if (!around->closed) {
+        const unsigned patches = constraint(mesh, *around).patches;
+        if (std::popcount(patches) != 1 || (patches >> box_faces) != 0) return std::nullopt;
+    }
     const auto inside = std::ranges::count_if(around->tets, [&](Tet t) { return mesh.region[t] == region; });
     if (inside == 0 || inside == static_cast<std::ptrdiff_t>(around->tets.size())) return std::nullopt;
     return around;
@@ -182,17 +219,64 @@ std::vector<std::array<Vertex, 2>> outline(const SurfaceStar& a, const SurfaceSt
     return sides;
 }
 
-/// Where the one vertex keeps the volume that both had, nearest to the middle of the edge.
-std::optional<Vec3> place_of_one(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b,
+/// Where two ends become one: near the middle of their edge, or, if one is held to more faces of the box than the other,
+/// near that; to be shifted as that one may be.
+struct Meeting {
+    Vec3 place;
+    Freedom free;
+};
+/// Nothing if both are on faces and either is on one that the other is not on; or if their edge is not in the face.
+std::optional<Meeting> meeting_of(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line) {
+    const Vec3 &p = mesh.position[a.vertex], &q = mesh.position[b.vertex];
+    if (!a.free.all() && !b.free.all() && !on_line) return std::nullopt;
+    if (a.free == b.free) return Meeting{0.5 * (p + q), a.free};
+    const auto is_freer = [](const Freedom& one, const Freedom& other) {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (other.along[i] && !one.along[i]) return false;
+        return true;
+    };
+    if (is_freer(a.free, b.free)) return Meeting{q, b.free};
+    if (is_freer(b.free, a.free)) return Meeting{p, a.free};
+    return std::nullopt;
+}
+
+/// Where the one vertex keeps the volume that both had, nearest to where they meet.
+std::optional<Vec3> place_of_one(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, const Meeting& meeting,
                                  std::span<const std::array<Vertex, 2>> outline, Region region) {
-    const Vec3 &p = mesh.position[a.vertex], &q = mesh.position[b.vertex], middle = 0.5 * (p + q);
+    const Vec3 &p = mesh.position[a.vertex], &q = mesh.position[b.vertex], &from = meeting.place;
     const std::array<Vertex, 2> ends = {a.vertex, b.vertex};
-    const double wanted = volume_under(triangles_at(mesh, ends, region), {mesh, {}}, middle);
+    const double wanted = volume_under(triangles_at(mesh, ends, region), {mesh, {}}, from);
     Vec3 slope;
-    for (const auto& [c, d] : outline) slope += cross(mesh.position[c] - middle, mesh.position[d] - middle);
+    for (const auto& [c, d] : outline) slope += cross(mesh.position[c] - from, mesh.position[d] - from);
+    slope = restricted(slope, meeting.free);
     const Vec3 shift = wanted / squared_norm(slope) * slope;
     if (!(norm(shift) <= most_shift * distance(p, q))) return std::nullopt;
-    return middle + shift;
+    return from + shift;
+}
+
+/// A cell between both ends goes; if it had a facet on the boundary at one end, the cell across from the other end comes to the boundary
+/// with the facet that was between the two.
+struct ComesToBoundary {
+    Tet cell;
+    int corner;
+    Patch patch;
+};
+/// Nothing if that cell is not there.
+std::optional<std::vector<ComesToBoundary>> coming_to_boundary(const Mesh& mesh, Edge edge, std::span<const Tet> cells) {
+    std::vector<ComesToBoundary> all;
+    for (Tet t : cells) {
+        const std::array<int, 2> at = {corner_of(mesh, t, edge.a), corner_of(mesh, t, edge.b)};
+        if (at[0] < 0 || at[1] < 0) continue;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Patch patch = mesh.patch[t][as_size(at[i])];
+            if (mesh.neighbour[t][as_size(at[i])].exists() || !patch.exists()) continue;
+            const Facet across{t, at[1 - i]};
+            const Tet n = mesh.neighbour[t][as_size(across.corner)];
+            if (!n.exists()) return std::nullopt;
+            all.push_back({n, mirror_corner(mesh, across), patch});
+        }
+    }
+    return all;
 }
 
 /// Do the triangles over the outline look where those looked that they replace, and is none of their sides too long?
@@ -208,9 +292,14 @@ bool is_fair(const Mesh& mesh, std::span<const std::array<Vertex, 2>> outline, c
 
 std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Region region, double longest) {
     const SurfaceStar a = surface_star(mesh, edge.a, region), b = surface_star(mesh, edge.b, region);
-    if (count_shared(a, b) != 2 || is_sharp(a, mesh) || is_sharp(b, mesh)) return std::nullopt;
+    const auto has_b = [&](const std::array<Vertex, 2>& side) { return side[0] == edge.b || side[1] == edge.b; };
+    const bool on_line = std::ranges::count_if(a.sides, has_b) == 1;
+    if (count_shared(a, b) != (on_line ? 1 : 2) || is_sharp(a, mesh) || is_sharp(b, mesh)) return std::nullopt;
+    const auto meeting = meeting_of(mesh, a, b, on_line);
+    const auto to_boundary = coming_to_boundary(mesh, edge, a.cells);
+    if (!meeting || !to_boundary) return std::nullopt;
     const auto around = outline(a, b);
-    const auto at = place_of_one(mesh, a, b, around, region);
+    const auto at = place_of_one(mesh, a, b, *meeting, around, region);
     if (!at || !is_fair(mesh, around, *at, twice_area(a, mesh) + twice_area(b, mesh), longest)) return std::nullopt;
 
     SurfaceChange change;
@@ -226,14 +315,18 @@ std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Regio
         std::array<Vec3, 4> x;
         for (std::size_t i = 0; i < 4; ++i) x[i] = i == corner ? *at : mesh.position[v[i]];
         v[corner] = inserted_vertex(0);
-        change.cavity.added.push_back({v, mesh.region[t], mesh.patch[t]});
+        NewTet& added = change.cavity.added.emplace_back(NewTet{v, mesh.region[t], mesh.patch[t]});
+        for (const auto& [cell, at_corner, patch] : *to_boundary)
+            if (cell == t) added.patch[as_size(at_corner)] = patch;
         change.worst_after = std::max(change.worst_after, tet_aspect_ratio(x[0], x[1], x[2], x[3]));
         if (change.worst_after == infinity) return std::nullopt;
     }
+    if (!meeting->free.all() && !fits(mesh, change.cavity)) return std::nullopt;
     return change;
 }
 
 std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, Region region) {
+    if (!shell.closed) return std::nullopt;
     const std::size_t n = shell.tets.size();
     const auto inside = [&](std::size_t i) { return mesh.region[shell.tets[i % n]] == region; };
     // From ring[first] on, cells are inside; from ring[second] on, outside. Seen from outside, with edge.a below, ring goes
@@ -252,8 +345,9 @@ std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, 
     const Vec3 normal = area(one) + area(other);
     if (is_sharp(area(one), area(other)) || !(dot(area(new_one), normal) > 0) || !(dot(area(new_other), normal) > 0))
         return std::nullopt;
-    const auto neighbours = ring(surface_star(mesh, c, region));
-    if (std::ranges::binary_search(neighbours, d)) return std::nullopt;
+    const SurfaceStar at_c = surface_star(mesh, c, region);
+    if (std::ranges::binary_search(ring(at_c), d)) return std::nullopt;
+    if (!at_c.free.all() && !surface_star(mesh, d, region).free.all()) return std::nullopt;  // it might lie in a face
 
     SurfaceChange change;
     change.cavity.removed = shell.tets;
@@ -284,7 +378,7 @@ std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, 
 
 std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region region) {
     const SurfaceStar star = surface_star(mesh, v, region);
-    if (is_sharp(star, mesh)) return std::nullopt;
+    if (is_sharp(star, mesh) || !star.free.all()) return std::nullopt;
     const auto height = height_of_quadric(mesh, star, region);
     if (!height) return std::nullopt;
     const Vec3 normal = normalised(twice_area(star, mesh)), here = mesh.position[v];
@@ -317,6 +411,11 @@ double least_angle(const Mesh& mesh, const SurfaceStar& star, const Vec3& at) {
 
 namespace {
 
+/// Along which the volume grows fastest where the vertex may go.
+Vec3 free_normal(const Mesh& mesh, const SurfaceStar& star) {
+    return normalised(restricted(twice_area(star, mesh), star.free));
+}
+
 /// From the vertex to the middle of its triangles, weighted by area, within the plane that keeps the volume.
 Vec3 way_to_middle(const Mesh& mesh, const SurfaceStar& star, const Vec3& normal) {
     const Vec3 here = mesh.position[star.vertex];
@@ -328,7 +427,7 @@ Vec3 way_to_middle(const Mesh& mesh, const SurfaceStar& star, const Vec3& normal
         sum += area / 3 * (a + b - 2 * here);
         total += area;
     }
-    const Vec3 way = sum / total;
+    const Vec3 way = restricted(sum / total, star.free);
     return way - dot(way, normal) * normal;
 }
 
@@ -352,7 +451,7 @@ std::optional<SurfaceChange> slide(const Mesh& mesh, Vertex v, Region region) {
     const SurfaceStar star = surface_star(mesh, v, region);
     if (is_sharp(star, mesh)) return std::nullopt;
     const Vec3 here = mesh.position[v];
-    const Vec3 place = here + way_to_middle(mesh, star, normalised(twice_area(star, mesh)));
+    const Vec3 place = here + way_to_middle(mesh, star, free_normal(mesh, star));
     if (!(least_angle(mesh, star, place) > least_angle(mesh, star, here)) || !agrees(mesh, star, place)) return std::nullopt;
     return if_valid(at_place(mesh, v, place));
 }
@@ -360,7 +459,7 @@ std::optional<SurfaceChange> slide(const Mesh& mesh, Vertex v, Region region) {
 std::optional<SurfaceChange> slide_for_cells(const Mesh& mesh, Vertex v, Region region) {
     const SurfaceStar star = surface_star(mesh, v, region);
     if (is_sharp(star, mesh)) return std::nullopt;
-    const Vec3 here = mesh.position[v], normal = normalised(twice_area(star, mesh));
+    const Vec3 here = mesh.position[v], normal = free_normal(mesh, star);
     // Down the slope of the worst cell's ratio, in the plane.
     double worst = 0;
     Vec3 downhill;
@@ -375,6 +474,7 @@ std::optional<SurfaceChange> slide_for_cells(const Mesh& mesh, Vertex v, Region 
         downhill = -tet_aspect_gradient(here, p, q, r).gradient;
     }
     const Vec3 to_middle = way_to_middle(mesh, star, normal);
+    downhill = restricted(downhill, star.free);
     downhill -= dot(downhill, normal) * normal;
     std::optional<SurfaceChange> best;
     for (Vec3 way : {to_middle, norm(downhill) > 0 ? first_step * nearest / norm(downhill) * downhill : Vec3{}})

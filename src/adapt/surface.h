@@ -11,7 +11,7 @@ namespace kropla {
 
 // Operators on the surface of a region that deforms. Each keeps the volume of the region, to rounding, within the cells it
 // changes, so that what is carried from mesh to mesh keeps its integral and its bounds there; none touches a sharp edge but
-// to split it.
+// to split it. Where the surface ends on faces of the box, its line stays there: vertices of it move along the faces.
 
 /// A vertex, and where it is to stand.
 struct Displaced {
@@ -29,13 +29,14 @@ struct SurfaceChange {
 /// Carries a proposal out and notes it.
 Replacement carry_out_surface(Mesh& mesh, const SurfaceChange& change, Changes& changes);
 
-/// Is it an edge of the region's surface? Then its shell, else nothing.
+/// Is it an edge of the region's surface? Then its shell, which is open where the surface ends on a face of the box with
+/// this edge; else nothing.
 [[nodiscard]] std::optional<Shell> surface_shell(const Mesh& mesh, Edge edge, Region region);
 
 /// A new vertex in the middle of the edge: flat, the volume inside is what it was.
 [[nodiscard]] SurfaceChange surface_split(const Mesh& mesh, const Shell& shell, Edge edge);
 
-/// Both ends become one vertex near the edge's middle, where it keeps the volume [Lindstrom, Turk 1998, "Fast and memory
+/// Both ends become one vertex near the edge's middle, or on the face of the box if one end is on it, where it keeps the volume [Lindstrom, Turk 1998, "Fast and memory
 /// efficient polygonal simplification"]. Nothing if an end is on a sharp edge, if the surface would touch itself or fold, or
 /// if a triangle's side would exceed `longest` [m].
 [[nodiscard]] std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Region region, double longest);
@@ -45,7 +46,7 @@ Replacement carry_out_surface(Mesh& mesh, const SurfaceChange& change, Changes& 
 [[nodiscard]] std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, Region region);
 
 /// Puts the vertex on the quadric of those around it, and shifts all of them together along the normal, so that the volume
-/// is what it was. For vertices of splits. Nothing at sharp edges.
+/// is what it was. For vertices of splits. Nothing at sharp edges, or on a face of the box.
 [[nodiscard]] std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region region);
 
 /// Slides the vertex towards the middle of the triangles around it, in the plane in which that does not change the

@@ -47,9 +47,14 @@ std::array<Vec3, 2> tangents(const Vec3& normal) {
 
 }  // namespace
 
+Freedom free_on_patches(const Mesh& mesh, Vertex v, std::span<const Tet> ball) {
+    return freedom(Constraint{constraint(mesh, v, ball).patches, false});
+}
+
 SurfaceStar surface_star(const Mesh& mesh, Vertex v, Region region) {
     SurfaceStar star{v, ball(mesh, v), {}};
     std::ranges::sort(star.cells);
+    star.free = free_on_patches(mesh, v, star.cells);
     for (Tet t : star.cells) {
         if (mesh.region[t] != region) continue;
         for (int corner = 0; corner < 4; ++corner) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "adapt/star.h"
 #include <kropla/mesh/mesh.h>
 #include <kropla/mesh/topology.h>
 
@@ -11,15 +12,19 @@
 namespace kropla {
 
 // What the operators on the surface of a region ask of it at a vertex. The region is a body that deforms; its surface are
-// the facets between its cells and others.
+// the facets between its cells and others; on faces of the box it may end, in lines along which its vertices slide.
 
 /// A vertex of the surface, the cells at it on both sides in ascending order, and the sides opposite to it of the triangles around it, each
-/// from its first end to its second counter-clockwise seen from outside.
+/// from its first end to its second counter-clockwise seen from outside; and along which axes the faces of the box on which
+/// it lies let it go.
 struct SurfaceStar {
     Vertex vertex;
     std::vector<Tet> cells;
     std::vector<std::array<Vertex, 2>> sides;
+    Freedom free = {};
 };
+/// The axes along which the patches at the vertex let it go.
+[[nodiscard]] Freedom free_on_patches(const Mesh& mesh, Vertex v, std::span<const Tet> ball);
 [[nodiscard]] SurfaceStar surface_star(const Mesh& mesh, Vertex v, Region region);
 
 /// Twice the area of the triangle times its normal, right hand.

@@ -162,12 +162,15 @@ void refuse_with_deforming(const CaseTable& file, const Case& it) {
         if (!it.domain.bodies[body].deformation || it.liquid[body] != 0) continue;
         for (const char* key : {"heat", "species", "flow"})
             if (file.has(key))
-                file.refuse(key, fmt::format("is solved for around bodies that move rigidly, or with the flow; {} deforms "
-                                             "(motion.kind = \"field\")", named(it.domain.bodies[body])));
+                file.refuse(key, fmt::format("is solved for around bodies that move rigidly, or with the flow; {} {}",
+                                             named(it.domain.bodies[body]),
+                                             it.domain.bodies[body].shape.cut ? "reaches through faces of the box"
+                                                                              : "deforms (motion.kind = \"field\")"));
     }
     const auto deforms = std::ranges::find_if(it.domain.bodies, [](const Body& body) { return bool(body.deformation); });
     if (deforms == it.domain.bodies.end()) return;
-    if (it.quality.paper) file.table("quality").refuse("method", fmt::format("\"paper\" moves rigid bodies; {} deforms", named(*deforms)));
+    const std::string does = deforms->shape.cut ? "reaches through faces of the box" : "deforms";
+    if (it.quality.paper) file.table("quality").refuse("method", fmt::format("\"paper\" moves rigid bodies; {} {}", named(*deforms), does));
 }
 
 }  // namespace

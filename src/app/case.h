@@ -55,10 +55,10 @@ using WrittenKeys = std::vector<std::pair<std::string, std::string>>;
 
 /// How the user put what the structs of a case hold in another form, each as a TOML value. Empty: not given.
 struct WrittenBody {
-    std::string shape;  // "sphere", "ellipsoid", "surface" or "region", without quotes
+    std::string shape;  // as the case names it, without quotes
     std::string region = {};  // of the mesh that the case brings, as TOML
     std::string rotation;
-    WrittenKeys surface;                // of a surface: where it comes from
+    WrittenKeys surface;                // of a surface, a slab or a cylinder: where it comes from
     std::array<std::string, 3> motion;  // all empty: at rest, or not by a path
     WrittenKeys free;                   // its motion, if it goes where forces take it
     std::string velocity;               // of its surface, if it deforms; else empty

@@ -1,10 +1,11 @@
 // Reading [[body]]: shape, motion and prism layer.
 #include "app/case_body.h"
 
+#include "app/case_shape.h"
 #include "app/deformation.h"
 #include <kropla/base/error.h>
-#include "domain/triangulated_surface.h"
-#include "io/triangles.h"
+#include <kropla/domain/solids.h>
+#include <kropla/domain/words.h>
 
 #include <fmt/format.h>
 
@@ -28,68 +29,6 @@ std::string read_name(const CaseTable& table, const std::vector<Body>& before) {
                                          toml_text(name), same - before.begin()));
     }
     return name;
-}
-
-Shape read_sphere(const CaseTable& table) {
-    if (table.has("axes")) table.refuse("axes", "a sphere has a radius instead");
-    if (table.has("rotation")) table.refuse("rotation", "a sphere has none");
-    const double radius = table.length("radius");
-    return {table.place("centre"), {radius, radius, radius}, {}};
-}
-
-Rotation read_rotation(const CaseTable& table, WrittenBody& written) {
-    if (!table.has("rotation")) return {};
-    const std::vector<double> r = table.numbers("rotation", 4, "[axis x, y, z, degrees]");
-    const Vec3 axis{r[0], r[1], r[2]};
-    if (!(norm(axis) > 0)) table.refuse_value("rotation", "must have an axis that is not zero");
-    written.rotation = fmt::format("[{}]", fmt::join(r, ", "));
-    return rotation_about(axis, r[3] * std::numbers::pi / 180);
-}
-
-Shape read_ellipsoid(const CaseTable& table, WrittenBody& written) {
-    if (table.has("radius")) table.refuse("radius", "an ellipsoid has axes = [a, b, c] instead");
-    Shape shape{table.place("centre"), table.lengths("axes"), {}};
-    shape.orientation = read_rotation(table, written);
-    return shape;
-}
-
-/// Where a file of the case is: beside the case file, if its path does not begin at the root.
-std::filesystem::path beside_case(const CaseTable& table, const std::string& file) {
-    return std::filesystem::absolute(std::filesystem::path(table.file()).parent_path() / file).lexically_normal();
-}
-
-Shape read_surface(const CaseTable& table, WrittenBody& written) {
-    for (const char* key : {"radius", "axes"})
-        if (table.has(key)) table.refuse(key, "a surface has file = \"...\", and scale, instead");
-    const std::string file = table.text("file");
-    const std::filesystem::path path = beside_case(table, file);
-    const double scale = table.has("scale") ? table.length("scale") : 1.0;
-    const Vec3 centre = table.place("centre");
-    const Rotation rotation = read_rotation(table, written);
-    written.surface = {{"file", toml_text(path.string())}, {"scale", toml_number(scale)}};
-    FileTriangles found;
-    try {
-        found = read_triangles(path);
-    } catch (const FileError& error) {
-        table.refuse("file", error.what());
-    }
-    for (Vec3& x : found.points) x *= scale;
-    try {
-        return shape_within(make_surface(found.points, found.triangles), centre, rotation);
-    } catch (const SurfaceError& error) {
-        throw SurfaceFileError(table.refusal("file", fmt::format("{}: {}", path.string(), error.what())), found.points,
-                               found.triangles, error.triangles);
-    }
-}
-
-Shape read_shape(const CaseTable& table, WrittenBody& written) {
-    written.shape = table.text("shape");
-    if (written.shape == "surface") return read_surface(table, written);
-    for (const char* key : {"file", "scale"})
-        if (table.has(key)) table.refuse(key, "is of shape = \"surface\"");
-    if (written.shape == "sphere") return read_sphere(table);
-    if (written.shape == "ellipsoid") return read_ellipsoid(table, written);
-    table.refuse_value("shape", "must be \"sphere\", \"ellipsoid\" or \"surface\"");
 }
 
 constexpr std::array<std::string_view, 3> coordinates = {"x", "y", "z"};
@@ -229,10 +168,6 @@ LayerOptions read_layer(const CaseTable& table) {
     return layer;
 }
 
-}  // namespace
-
-namespace {
-
 void go_with_flow(const CaseTable& table, Case& it, Body& body) {
     table.allow({"kind"});
     it.liquid.back() = 1;
@@ -259,21 +194,42 @@ void take_body(Case& it, Body body, WrittenBody written) {
     it.written_bodies.push_back(std::move(written));
 }
 
+/// What bodies cannot have that reach through faces of the box.
+void refuse_with_cut(const CaseTable& table, const Case& it, const Body& body) {
+    int face = 0;
+    while (!reaches(reached_faces(body.shape), face)) ++face;
+    const std::string through = fmt::format("; this one reaches through {}", wall_name(face));
+    if (body.layer) table.refuse("layer", "stands on bodies that are wholly in the box" + through);
+    if (it.free.back()) table.table("motion").refuse("kind", "\"free\" is for bodies that are wholly in the box" + through);
+    if (it.liquid.back() != 0) table.table("motion").refuse("kind", "\"flow\" is for bodies that are wholly in the box" + through);
+    const Pose start = body.motion(0);
+    for (int axis = 0; axis < 3; ++axis)
+        if (start.displacement[axis] != 0)
+            table.table("motion").refuse(coordinates[as_size(axis)], "must be 0 at t = 0 for a body that is cut" + through);
+    if (start.rotation.axes != Rotation{}.axes)
+        table.table("motion").refuse("angle", "must be 0 at t = 0 for a body that is cut" + through);
+}
+
 }  // namespace
 
 void read_bodies(const CaseTable& file, Case& it) {
     for (const CaseTable& table : file.tables("body")) {
         if (table.has("shape") && table.holds_text("shape") && table.text("shape") == "region")
             table.refuse("shape", "\"region\" is one of a mesh that domain.mesh names; there is none");
-        table.allow({"name", "shape", "centre", "radius", "axes", "file", "scale", "rotation", "size", "motion", "layer"});
+        table.allow({"name", "shape", "centre", "radius", "axes", "file", "scale", "rotation", "cut", "min", "max", "from", "to",
+                     "size", "motion", "layer"});
         WrittenBody written;
-        Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
+        Body body{read_name(table, it.domain.bodies), read_shape(table, it.domain.box, written)};
         if (table.has("size")) body.size = table.length("size");
         read_motion(table, it, body, written);
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
         if (body.layer && body.deformation)
             table.refuse("layer", fmt::format("stands on bodies that move rigidly; this one deforms (motion.kind = \"{}\")",
                                               table.table("motion").text("kind")));
+        if (reached_faces(body.shape) != 0) {
+            refuse_with_cut(table, it, body);
+            body = cut_body(std::move(body));
+        }
         take_body(it, std::move(body), std::move(written));
     }
     const auto tables = file.tables("body");

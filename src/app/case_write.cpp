@@ -38,7 +38,7 @@ std::string body(const Case& it, std::size_t number) {
     const WrittenBody& written = it.written_bodies[number];
     const std::string table = fmt::format("body[{}]", number);
     std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\n", toml_text(body.name), written.shape);
-    if (written.shape != "region") text += line(it, table, "centre", vec3(body.shape.centre));
+    if (written.shape == "sphere" || written.shape == "ellipsoid") text += line(it, table, "centre", vec3(body.shape.centre));
     if (written.shape == "region") {
         text += fmt::format("region = {}\n", written.region);
     } else if (written.shape == "sphere") {

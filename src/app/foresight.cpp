@@ -5,6 +5,7 @@
 #include "domain/approach.h"
 #include "domain/layer_room.h"
 #include "domain/paths.h"
+#include <kropla/domain/solids.h>
 
 #include <fmt/format.h>
 
@@ -220,6 +221,18 @@ std::string doubt(const Case& it, const Approach& gap, double in_sizes) {
         metres(rounded_down(size_for_gap(it.domain, gap, in_sizes))));
 }
 
+/// Throws if a rigid body would come through a face of the box as another section than the one that is cut there.
+void check_cut_bodies(const Case& it, const Watch* watch) {
+    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
+        const Body& of = it.domain.bodies[body];
+        if (!of.shape.cut || !it.written_bodies[body].velocity.empty()) continue;
+        for (int step = 1; step <= it.time.steps; ++step) {
+            heed(watch);
+            check_upright(of, it.time.end * step / it.time.steps);
+        }
+    }
+}
+
 /// Throws if a free body begins nearer to something than it may come.
 void check_start(const Case& it) {
     if (!it.contact) return;
@@ -299,6 +312,7 @@ std::vector<std::string> foresee(const Case& it, const Watch* watch) {
     }
     check_sizes(it, all.limit, watch);
     check_start(it);
+    check_cut_bodies(it, watch);
     if (it.mesh) warnings.insert(warnings.end(), it.mesh->notes.begin(), it.mesh->notes.end());
     else if (const std::string thin = thin_box(domain); !thin.empty()) warnings.push_back(thin);
     if (domain.size.growth > steepest_growth)

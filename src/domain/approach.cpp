@@ -66,10 +66,14 @@ double wall_gap(const Box& box, const Bounds& held, int wall) {
     return wall % 2 == 0 ? held.min[axis] - box.min[axis] : box.max[axis] - held.max[axis];
 }
 
+double wall_gap(const Box& box, const Shape& shape, const Bounds& held, int wall) {
+    return reaches(reached_faces(shape), wall) ? infinity : wall_gap(box, held, wall);
+}
+
 double gap_at(const Domain& domain, const Approach& pair, double time) {
     const Shape body = placed(domain.bodies[pair.body].shape, pose_at(domain.bodies[pair.body], time));
     if (pair.wall == fixed_walls) return gap_between(body, *domain.walls);
-    if (pair.wall >= 0) return wall_gap(domain.box, bounds(body), pair.wall);
+    if (pair.wall >= 0) return wall_gap(domain.box, body, bounds(body), pair.wall);
     const Body& other = domain.bodies[pair.other];
     return gap_between(body, placed(other.shape, pose_at(other, time)));
 }
@@ -98,7 +102,7 @@ std::optional<Approach> approach_at(const Snapshot& at, const Vec3& place, doubl
     }
     nearest = infinity;
     for (int wall = 0; wall < 6; ++wall) {
-        const double away = wall_gap(at.box, {place, place}, wall);
+        const double away = wall_gap(at.box, at.shapes[found.body], {place, place}, wall);
         if (away < nearest) found.wall = wall;
         nearest = std::min(nearest, away);
     }
@@ -114,10 +118,11 @@ std::optional<Approach> approach_at(const Snapshot& at, const Vec3& place, doubl
         found.wall = -1;
         found.other = other;
     }
+    if (nearest == infinity) return std::nullopt;
     if (found.wall < 0 && found.other < found.body) std::swap(found.body, found.other);
     const Shape& body = at.shapes[found.body];
     found.gap = std::max(0.0, found.wall == fixed_walls ? gap_between(body, *at.walls)
-                              : found.wall >= 0         ? wall_gap(at.box, bounds(body), found.wall)
+                              : found.wall >= 0         ? wall_gap(at.box, body, bounds(body), found.wall)
                                                         : gap_between(body, at.shapes[found.other]));
     found.time = time;
     return found;
@@ -180,7 +185,7 @@ void Approaches::look(const Instant& now) {
 }
 
 void Approaches::look_at_wall(const Instant& now, std::size_t body, const Bounds& held, int wall) {
-    const double gap = wall_gap(domain_.box, held, wall);
+    const double gap = wall_gap(domain_.box, now.shapes[body], held, wall);
     if (!(gap >= 0)) refuse_outside(domain_, body, held, wall, now.time);
     if (gap >= near_) return;
     const Seen unseen{{body, wall, 0, infinity, 0}, 0, 0, 0};

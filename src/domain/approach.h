@@ -23,6 +23,8 @@ struct Instant {
 
 /// From the side of the body that looks to the face of the box, 0 ... 5, to that face; negative outside [m].
 [[nodiscard]] double wall_gap(const Box& box, const Bounds& held, int wall);
+/// Of a shape within these bounds; infinite at a face that it reaches through.
+[[nodiscard]] double wall_gap(const Box& box, const Shape& shape, const Bounds& held, int wall);
 /// Of the two, or of the body and the wall, at `time` [s]; not positive where they touch [m].
 [[nodiscard]] double gap_at(const Domain& domain, const Approach& approach, double time);
 /// The body nearest to the place, and the wall or other body that is nearest to the place then, with their

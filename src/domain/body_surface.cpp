@@ -44,7 +44,7 @@ std::vector<BodySurface> deforming_surfaces(const Domain& domain, const Mesh& me
     return body_surfaces(mesh, bodies);
 }
 
-Shape shape_of(const BodySurface& surface, const Array<Vertex, Vec3>& places) {
+Shape shape_of(const BodySurface& surface, const Array<Vertex, Vec3>& places, const Box& box) {
     std::vector<Vec3> points;
     std::vector<std::array<int, 3>> triangles;
     for (Vertex v : surface.vertices) points.push_back(places[v]);
@@ -52,13 +52,14 @@ Shape shape_of(const BodySurface& surface, const Array<Vertex, Vec3>& places) {
         return static_cast<int>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
     };
     for (const auto& [a, b, c] : surface.triangles) triangles.push_back({number(a), number(b), number(c)});
-    return shape_of_facets(std::move(points), std::move(triangles));
+    const Bounds within{box.min, box.max};
+    return shape_of_facets(std::move(points), std::move(triangles), &within);
 }
 
 Snapshot snapshot(const Domain& domain, double t, std::span<const BodySurface> deforming,
                   const Array<Vertex, Vec3>& places, bool uneven) {
     Snapshot at = snapshot(domain, t);
-    for (const BodySurface& surface : deforming) at.shapes[surface.body] = shape_of(surface, places);
+    for (const BodySurface& surface : deforming) at.shapes[surface.body] = shape_of(surface, places, domain.box);
     if (!deforming.empty()) plant_tree(at);
     at.narrow = uneven || has_narrow_gap(at);
     return at;

@@ -19,8 +19,8 @@ struct BodySurface {
 /// Of the bodies of the domain that have a deformation.
 [[nodiscard]] std::vector<BodySurface> deforming_surfaces(const Domain& domain, const Mesh& mesh);
 
-/// What it bounds, with its vertices at `places` [m].
-[[nodiscard]] Shape shape_of(const BodySurface& surface, const Array<Vertex, Vec3>& places);
+/// What it bounds in the box, at whose faces it may end, with its vertices at `places` [m].
+[[nodiscard]] Shape shape_of(const BodySurface& surface, const Array<Vertex, Vec3>& places, const Box& box);
 
 /// The domain at time `t` [s], its deforming bodies as their surfaces are with the vertices at `places`; target sizes fall
 /// in gaps if one is narrow, or if triangles are `uneven` for the sake of one, so that they grow again by and by.

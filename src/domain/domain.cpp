@@ -111,10 +111,15 @@ double rising_distance(const Snapshot& at, std::size_t body, double from_wall) {
 
 bool has_layer(const Snapshot& at, std::size_t body) { return body < at.layers.size() && at.layers[body]; }
 
-double distance_to_walls(const Snapshot& at, const Vec3& x) {
+/// To those that the body does not reach through: at these there is no gap.
+double distance_to_walls(const Snapshot& at, const Vec3& x, std::size_t body) {
     double nearest = at.walls ? std::sqrt(at.walls->nearest(x).squared_distance) : std::numeric_limits<double>::infinity();
-    for (int axis = 0; axis < 3; ++axis)
-        nearest = std::min({nearest, x[axis] - at.box.min[axis], at.box.max[axis] - x[axis]});
+    const unsigned reached = body < at.shapes.size() ? reached_faces(at.shapes[body]) : 0;
+    for (int face = 0; face < box_faces; ++face) {
+        const int axis = face / 2;
+        if (reaches(reached, face)) continue;
+        nearest = std::min(nearest, face % 2 == 0 ? x[axis] - at.box.min[axis] : at.box.max[axis] - x[axis]);
+    }
     return std::max(0.0, nearest);
 }
 
@@ -123,7 +128,7 @@ struct Surrounded {
     static constexpr std::size_t none = static_cast<std::size_t>(-1);
     double nearest = std::numeric_limits<double>::infinity(), next = nearest;  // bodies without layers [m]
     double depth = 0;                                                          // in the body `within` [m]
-    std::size_t within = none;
+    std::size_t within = none, beside = none;                                  // beside: the nearest
 
     void see(const Snapshot& at, std::size_t body, double signed_distance) {
         if (signed_distance < 0) {
@@ -133,15 +138,16 @@ struct Surrounded {
         if (has_layer(at, body)) return;
         const double d = std::abs(signed_distance);
         next = std::min(next, std::max(nearest, d));
+        if (d < nearest) beside = body;
         nearest = std::min(nearest, d);
     }
 };
 
 double gap_width(const Snapshot& at, const Vec3& x, const Surrounded& by) {
-    if (by.within == Surrounded::none) return by.nearest + std::min(by.next, distance_to_walls(at, x));
+    if (by.within == Surrounded::none) return by.nearest + std::min(by.next, distance_to_walls(at, x, by.beside));
     if (has_layer(at, by.within)) return std::numeric_limits<double>::infinity();
     const Vec3 on_surface = closest_point(at.shapes[by.within], x);
-    double nearest = distance_to_walls(at, on_surface);
+    double nearest = distance_to_walls(at, on_surface, by.within);
     for (std::size_t body = 0; body < at.shapes.size(); ++body)
         if (body != by.within && !has_layer(at, body))
             nearest = std::min(nearest, std::max(0.0, signed_distance(at.shapes[body], on_surface)));
@@ -160,7 +166,7 @@ bool has_narrow_gap(const Snapshot& at) {
         bodies.push_back(body);
         const Bounds& here = held.emplace_back(bounds(at.shapes[body]));
         for (int wall = 0; wall < box_faces; ++wall)
-            if (wall_gap(at.box, here, wall) < narrow) return true;
+            if (wall_gap(at.box, at.shapes[body], here, wall) < narrow) return true;
         if (at.walls && gap_between(at.shapes[body], *at.walls) < narrow) return true;
     }
     return std::ranges::any_of(pairs_within(held, narrow), [&](const auto& pair) {
@@ -177,7 +183,7 @@ std::vector<char> are_in_gaps(const Snapshot& at) {
         const Bounds& here = held.emplace_back(bounds(at.shapes[body]));
         widest = std::max(widest, narrow);
         for (int wall = 0; wall < box_faces; ++wall)
-            if (wall_gap(at.box, here, wall) < narrow) in_gap[body] = 1;
+            if (wall_gap(at.box, at.shapes[body], here, wall) < narrow) in_gap[body] = 1;
         if (at.walls && gap_between(at.shapes[body], *at.walls) < narrow) in_gap[body] = 1;
     }
     for (const auto& [a, b] : pairs_within(held, widest)) in_gap[a] = in_gap[b] = 1;

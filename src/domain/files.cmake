@@ -4,6 +4,8 @@ list(APPEND KROPLA_MESH_FILES
     domain/triangulated_surface.cpp
     domain/of_mesh.cpp
     domain/body_surface.cpp
+    domain/cut.cpp
+    domain/solids.cpp
     domain/domain.cpp
     domain/gap.cpp
     domain/layer_fit.cpp
@@ -14,4 +16,5 @@ list(APPEND KROPLA_MESH_FILES
     domain/words.cpp
 )
 # For users: <kropla/domain/...>.
-list(APPEND KROPLA_MESH_HEADERS domain/domain.h domain/shape.h domain/words.h domain/of_mesh.h)
+list(APPEND KROPLA_MESH_HEADERS domain/domain.h domain/shape.h domain/words.h domain/of_mesh.h
+     domain/solids.h)

@@ -22,10 +22,10 @@ std::string overstep(const Box& box, const Bounds& held, int wall) {
            (low ? "begins at " + metres(box.min[axis]) : "ends at " + metres(box.max[axis]));
 }
 
-Approach nearest_wall(const Box& box, const Bounds& held, std::size_t body, double t) {
+Approach nearest_wall(const Box& box, const Shape& shape, const Bounds& held, std::size_t body, double t) {
     Approach nearest{body, -1, 0, std::numeric_limits<double>::infinity(), t};
     for (int wall = 0; wall < 6; ++wall) {
-        const double gap = wall_gap(box, held, wall);
+        const double gap = wall_gap(box, shape, held, wall);
         if (gap >= nearest.gap) continue;
         nearest.gap = gap;
         nearest.wall = wall;
@@ -69,12 +69,12 @@ SizeLimit surface_limit(const Domain& domain, double t, double least_gap) {
         assert(is_finite(shape.centre) && shape.semi_axes.x > 0 && shape.semi_axes.y > 0 &&
                shape.semi_axes.z > 0);
         held.push_back(bounds(shape));
-        const Approach wall = nearest_wall(domain.box, held.back(), i, t);
+        const Approach wall = nearest_wall(domain.box, shape, held.back(), i, t);
         if (!(wall.gap >= 0))
             throw DomainError(named(domain.bodies[i]) + " is not inside the box: " +
                               overstep(domain.box, held.back(), wall.wall));
-        lower_by_gap(limit, domain, wall, least_gap);
-        out = std::max(out, 2 * stand_out(domain, wall));
+        if (wall.wall >= 0) lower_by_gap(limit, domain, wall, least_gap);
+        out = std::max(out, 2 * outward_shift(domain.bodies[i].shape, asked_size(domain, i)));
         if (at.walls)
             lower_by_gap(limit, domain, {i, fixed_walls, 0, gap_between(shape, *at.walls), t}, least_gap);
         const double radius = least_curvature_radius(shape);

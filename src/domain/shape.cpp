@@ -47,8 +47,10 @@ Shape shape_within(std::vector<Vec3> points, const std::vector<std::array<int, 3
     return shape_within(make_surface(std::move(points), triangles), centre);
 }
 
+unsigned reached_faces(const Shape& shape) { return shape.surface ? shape.surface->reached() : 0; }
+
 Shape placed(const Shape& start, const Pose& pose) {
-    return {start.centre + pose.displacement, start.semi_axes, pose.rotation * start.orientation, start.surface};
+    return {start.centre + pose.displacement, start.semi_axes, pose.rotation * start.orientation, start.surface, start.cut};
 }
 
 Vec3 placed(const Shape& start, const Pose& pose, const Vec3& at_start) {
@@ -153,6 +155,8 @@ namespace {
 
 /// How far the triangles reach along the axis of space, from the centre, to either side.
 Bounds bounds_of_surface(const Shape& shape) {
+    if (reached_faces(shape) != 0)  // as it stands
+        return {shape.centre + shape.surface->extent().min, shape.centre + shape.surface->extent().max};
     Bounds held{shape.centre, shape.centre};
     for (int i = 0; i < 3; ++i) {
         const auto& axes = shape.orientation.axes;

@@ -25,6 +25,7 @@ struct Pose {
 };
 
 class TriangulatedSurface;  // triangulated_surface.h
+struct CutSurface;          // cut.h
 class TriangleTree;         // triangle_tree.h
 
 /// The shape of a body: an ellipsoid, of which a sphere is one with equal semi-axes; or what a surface of triangles
@@ -34,11 +35,16 @@ struct Shape {
     Vec3 semi_axes;         // [m], each positive; of a surface: half the extents along its own axes
     Rotation orientation;
     std::shared_ptr<const TriangulatedSurface> surface = {};  // about the centre, by its own axes; none: an ellipsoid
+    std::shared_ptr<const CutSurface> cut = {};  // what that is a part of, where faces of the box cut the body (solids.h)
 };
 
 [[nodiscard]] inline bool is_sphere(const Shape& s) {
     return s.semi_axes.x == s.semi_axes.y && s.semi_axes.y == s.semi_axes.z && !s.surface;
 }
+
+/// The faces of the box, as bits, that the shape reaches through: its surface ends there, or leaves the whole face to it.
+[[nodiscard]] unsigned reached_faces(const Shape& shape);
+[[nodiscard]] inline bool reaches(unsigned faces, int face) { return (faces >> face & 1u) != 0; }
 
 /// What the surface bounds, its origin at `centre` and its axes turned by `orientation`.
 [[nodiscard]] Shape shape_within(TriangulatedSurface surface, const Vec3& centre = {},

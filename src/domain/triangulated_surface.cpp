@@ -3,7 +3,8 @@
 // Whether a point is inside is told by the pseudonormal of what is nearest to it, weighted by angles at a corner
 // [Baerentzen, Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal"]: right for every
 // closed surface, convex or not, also where an edge or a corner is nearest. What part of a triangle is nearest is told
-// once, with the nearest place, so that both agree.
+// once, with the nearest place, so that both agree. Of a surface that ends on faces of a box, the normals at its rim are those
+// of the surface and its mirror image together, which is closed there: their parts across the face cancel.
 
 #include "domain/triangulated_surface.h"
 
@@ -100,11 +101,19 @@ void check_values(const Draft& d) {
 
 /// Per triangle and edge, from corner i to the next, the triangle beyond and its edge.
 struct Beyond {
-    std::size_t triangle, edge;
+    static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+    std::size_t triangle = none, edge = 0;
+    [[nodiscard]] bool exists() const { return triangle != none; }
 };
 using Neighbours = std::vector<std::array<Beyond, 3>>;
 
-Neighbours neighbours(const Draft& d) {
+/// The faces of the box on which both points lie, as bits, of those of each point; none of a surface that is to be closed.
+unsigned faces_of_edge(std::span<const unsigned> faces, int a, int b) {
+    return faces.empty() ? 0 : faces[as_size(a)] & faces[as_size(b)];
+}
+
+/// Edges on a face of the box may be open.
+Neighbours neighbours(const Draft& d, std::span<const unsigned> faces) {
     struct Side {
         int low, high;
         std::size_t triangle, edge;
@@ -124,6 +133,7 @@ Neighbours neighbours(const Draft& d) {
         const Side& one = sides[i];
         const auto edge = [&] { return edge_words(d, one.low, one.high); };
         if (end - i == 1) {
+            if (faces_of_edge(faces, one.low, one.high) != 0) continue;
             open.add({one.triangle}, [&] {
                 return "is not closed: " + edge() + " has but one triangle, " + std::to_string(one.triangle);
             });
@@ -184,7 +194,7 @@ std::vector<std::size_t> parts_of(const Neighbours& beyond) {
             const std::size_t t = reached.back();
             reached.pop_back();
             for (const Beyond& b : beyond[t])
-                if (std::exchange(part[b.triangle], parts) == none) reached.push_back(b.triangle);
+                if (b.exists() && std::exchange(part[b.triangle], parts) == none) reached.push_back(b.triangle);
         }
         ++parts;
     }
@@ -313,6 +323,71 @@ double TriangulatedSurface::signed_distance(const Vec3& x) const {
 
 namespace {
 
+/// What an open surface bounds together with the faces of the box, on which its points lie as told.
+struct Content {
+    double volume = 0;
+    Vec3 moment;  // about the origin
+};
+
+/// An axis with at most one open face across it, or -1.
+int axis_of_content(unsigned open) {
+    for (int axis = 0; axis < 3; ++axis)
+        if ((open >> (2 * axis) & 3u) != 3u) return axis;
+    return -1;
+}
+
+/// By the flux of (x - face) e through the surface, e an axis of the box with at most one open face across it: there the
+/// flux is zero, and along the other faces too [Gauss]. Exact, as the middles of edges integrate quadratic functions. The
+/// face opposite is not open: if it is in the body, the flux there is the box's volume, which is more than what was found.
+Content content_of_open(const Draft& d, const Bounds& box, unsigned open) {
+    const int axis = axis_of_content(open);
+    if (axis < 0) refuse("is open at both faces of the box along all three axes");
+    const double face = (open >> (2 * axis + 1) & 1u) != 0 ? box.max[axis] : box.min[axis];
+    Content content;
+    for (std::size_t t = 0; t < d.triangles.size(); ++t) {
+        const Corners c = d.corners(t);
+        const double flux = twice_area(c)[axis] / 2;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 x = 0.5 * (c[i] + c[next(i)]);
+            const double height = x[axis] - face, part = flux / 3 * height;
+            content.volume += part;
+            for (int k = 0; k < 3; ++k) content.moment[k] += part * (k == axis ? face + height / 2 : x[k]);
+        }
+    }
+    if (content.volume >= 0) return content;
+    const Vec3 width = box.max - box.min;
+    const double all = width.x * width.y * width.z;
+    content.volume += all;
+    content.moment += all / 2 * (box.min + box.max);
+    return content;
+}
+
+/// The faces at which edges are open, as bits.
+unsigned open_faces(const Draft& d, const Neighbours& beyond, std::span<const unsigned> faces) {
+    unsigned open = 0;
+    for (std::size_t t = 0; t < d.triangles.size(); ++t)
+        for (std::size_t i = 0; i < 3; ++i)
+            if (!beyond[t][i].exists()) open |= faces_of_edge(faces, d.triangles[t][i], d.triangles[t][next(i)]);
+    return open;
+}
+
+/// Without what of it is across these faces.
+Vec3 along_faces(Vec3 normal, unsigned faces) {
+    for (int axis = 0; axis < 3; ++axis)
+        if ((faces >> (2 * axis) & 3u) != 0) normal[axis] = 0;
+    return normal;
+}
+
+std::vector<unsigned> faces_of_points(std::span<const Vec3> points, const Bounds& box) {
+    std::vector<unsigned> faces(points.size(), 0);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            if (points[i][axis] == box.min[axis]) faces[i] |= 1u << (2 * axis);
+            if (points[i][axis] == box.max[axis]) faces[i] |= 2u << (2 * axis);
+        }
+    return faces;
+}
+
 /// The middle of the volume, or of what comes near it where this vanishes.
 Vec3 centroid_of(const Draft& d) {
     const Vec3 origin = d.corner(0, 0);
@@ -330,10 +405,10 @@ Vec3 centroid_of(const Draft& d) {
 }  // namespace
 
 TriangulatedSurface TriangulatedSurface::joined(std::vector<Vec3> points, std::vector<Triangle> triangles,
-                                                bool is_checked) {
+                                                bool is_checked, std::span<const unsigned> faces) {
     const Draft draft{points, triangles};
     if (is_checked) check_values(draft);
-    const Neighbours beyond = neighbours(draft);
+    const Neighbours beyond = neighbours(draft, faces);
     if (is_checked) {
         check_rings(draft, beyond);
         check_crossings(draft);
@@ -343,20 +418,50 @@ TriangulatedSurface TriangulatedSurface::joined(std::vector<Vec3> points, std::v
     TriangulatedSurface surface(std::move(points), std::move(triangles));
     for (std::size_t t : first) surface.point_of_parts_.push_back(surface.tree_.corners(t)[0]);
     for (std::size_t t = 0; t < beyond.size(); ++t)
-        for (std::size_t i = 0; i < 3; ++i)  // turned round, edge 0 is edge 2
+        for (std::size_t i = 0; i < 3; ++i) {  // turned round, edge 0 is edge 2
+            const Vec3& normal = surface.inside_normal_[t];
+            const Triangle& corners = surface.triangles()[t];
             surface.edge_normal_[t][turned ? 2 - i : i] =
-                surface.inside_normal_[t] + surface.inside_normal_[beyond[t][i].triangle];
+                beyond[t][i].exists() ? normal + surface.inside_normal_[beyond[t][i].triangle]
+                                      : along_faces(normal, faces_of_edge(faces, corners[i], corners[next(i)]));
+        }
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        surface.corner_normal_[i] = along_faces(surface.corner_normal_[i], faces[i]);
     return surface;
+}
+
+void TriangulatedSurface::ends_on(const Bounds& box, unsigned open, double volume) {
+    volume_ = volume;
+    centroid_ = {};
+    reached_ = open;
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        const double plane = face % 2 == 0 ? box.min[axis] : box.max[axis];
+        Vec3 middle = 0.5 * (box.min + box.max);
+        middle[axis] = plane;
+        if ((open >> face & 1u) == 0 && !(signed_distance(middle) < 0)) continue;
+        reached_ |= 1u << face;
+        extent_.min[axis] = std::min(extent_.min[axis], plane);
+        extent_.max[axis] = std::max(extent_.max[axis], plane);
+    }
 }
 
 TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<Triangle> triangles) {
     return TriangulatedSurface::joined(std::move(points), std::move(triangles), true);
 }
 
-Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles) {
-    const Vec3 centre = centroid_of({points, triangles});
+Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles, const Bounds* box) {
+    const Draft draft{points, triangles};
+    const std::vector<unsigned> faces = box ? faces_of_points(points, *box) : std::vector<unsigned>{};
+    const bool may_be_open = std::ranges::any_of(faces, [](unsigned of) { return of != 0; });
+    const unsigned open = may_be_open ? open_faces(draft, neighbours(draft, faces), faces) : 0;
+    const Content content = open != 0 ? content_of_open(draft, *box, open) : Content{};
+    const Vec3 centre = open == 0 ? centroid_of(draft) : content.moment / content.volume;
     for (Vec3& x : points) x -= centre;
-    return shape_within(TriangulatedSurface::joined(std::move(points), std::move(triangles), false), centre);
+    TriangulatedSurface surface =
+        TriangulatedSurface::joined(std::move(points), std::move(triangles), false, open != 0 ? faces : std::span<const unsigned>{});
+    if (open != 0) surface.ends_on({box->min - centre, box->max - centre}, open, content.volume);
+    return shape_within(std::move(surface), centre);
 }
 
 }  // namespace kropla

@@ -15,7 +15,8 @@ struct SurfaceError : DomainError {
     std::vector<std::size_t> triangles;
 };
 
-/// A closed surface of triangles, in one part or several, which bounds a volume: made by `make_surface`.
+/// A closed surface of triangles, in one part or several, which bounds a volume: made by `make_surface`. Or one that is open
+/// where faces of a box cut it (`shape_of_facets`), which bounds a volume together with these: asked for places in the box.
 class TriangulatedSurface {
 public:
     [[nodiscard]] const TriangleTree& tree() const { return tree_; }
@@ -30,17 +31,21 @@ public:
     [[nodiscard]] double volume() const { return volume_; }      ///< [m^3]
     [[nodiscard]] double area() const { return area_; }          ///< [m^2]
     [[nodiscard]] const Vec3& centroid() const { return centroid_; }  ///< of the volume
-    [[nodiscard]] const Extent& extent() const { return extent_; }    ///< the box that just holds it
+    [[nodiscard]] const Extent& extent() const { return extent_; }    ///< the box that just holds it, and what it bounds
     [[nodiscard]] double farthest() const { return farthest_; }       ///< of its points from the origin [m]
+    [[nodiscard]] unsigned reached() const { return reached_; }  ///< faces of the box on which what it bounds lies, as bits
     /// One point of each connected part.
     [[nodiscard]] std::span<const Vec3> point_of_parts() const { return point_of_parts_; }
 
 private:
     friend TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
-    friend Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+    friend Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles, const Bounds* box);
     TriangulatedSurface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+    /// It is open; what it bounds has this volume [m^3] and reaches the faces of the box, given as the points are, on which
+    /// it is open, or in whose middles it is.
+    void ends_on(const Bounds& box, unsigned open, double volume);
     static TriangulatedSurface joined(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles,
-                                      bool is_checked);
+                                      bool is_checked, std::span<const unsigned> faces = {});
 
     TriangleTree tree_;
     std::vector<Vec3> inside_normal_;                // per triangle, of unit length
@@ -48,6 +53,7 @@ private:
     std::vector<Vec3> corner_normal_;                // per point
     std::vector<Vec3> point_of_parts_;
     double volume_ = 0, area_ = 0, farthest_ = 0;
+    unsigned reached_ = 0;
     Vec3 centroid_;
     Extent extent_;
 };
@@ -63,7 +69,11 @@ private:
 [[nodiscard]] TriangulatedSurface make_surface(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
 
 /// What facets of a mesh bound where they are [m], its centre its centroid: they are known to be a closed surface that is
-/// turned out, and nothing is looked at but that each edge has two. For surfaces that are made anew in every step.
-[[nodiscard]] Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles);
+/// turned out, and nothing is looked at but that each edge has two. For surfaces that are made anew in every step. Edges
+/// with both ends on a face of `box`, exactly, may have one: there the body goes on to the face, and the volume is what is
+/// within the box. Throws SurfaceError if an edge is open elsewhere, or if along all three axes the surface is open at
+/// both faces.
+[[nodiscard]] Shape shape_of_facets(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles,
+                                    const Bounds* box = nullptr);
 
 }  // namespace kropla

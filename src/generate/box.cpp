@@ -48,11 +48,23 @@ void space_evenly(const Snapshot& at, const Vec3& start, int axis, double end, s
 
 }  // namespace
 
-std::vector<Vec3> sample_box_edges(const Snapshot& at) {
+std::vector<Vec3> sample_box_edges(const Snapshot& at, const std::vector<Vec3>& given) {
     std::vector<Vec3> points;
     for (const Vec3& corner : box_corners(at.box))
-        for (int axis = 0; axis < 3; ++axis)
-            if (corner[axis] == at.box.min[axis]) space_evenly(at, corner, axis, at.box.max[axis], points);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (corner[axis] != at.box.min[axis]) continue;
+            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            std::vector<double> ends = {at.box.max[axis]};
+            for (const Vec3& x : given)
+                if (x[u] == corner[u] && x[v] == corner[v] && x[axis] > corner[axis]) ends.push_back(x[axis]);
+            std::ranges::sort(ends);
+            ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+            Vec3 start = corner;
+            for (double end : ends) {
+                space_evenly(at, start, axis, end, points);
+                start[axis] = end;
+            }
+        }
     return points;
 }
 

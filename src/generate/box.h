@@ -10,8 +10,9 @@ namespace kropla {
 /// The eight corners of the box.
 [[nodiscard]] std::vector<Vec3> box_corners(const Box& box);
 
-/// The points within the twelve edges of the box, spaced evenly in terms of the target size.
-[[nodiscard]] std::vector<Vec3> sample_box_edges(const Snapshot& at);
+/// The points within the twelve edges of the box, spaced evenly in terms of the target size, between its corners and the
+/// points `given` on edges.
+[[nodiscard]] std::vector<Vec3> sample_box_edges(const Snapshot& at, const std::vector<Vec3>& given = {});
 
 /// The face of the box that is `patch`, as a flat box.
 [[nodiscard]] Box face_of_box(const Box& box, Patch patch);

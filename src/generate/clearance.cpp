@@ -25,7 +25,12 @@ double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x) {
     const double width = at.box.max[axis] - at.box.min[axis];
     widened.min[axis] -= at.size.far + width;
     widened.max[axis] += at.size.far + width;
-    return distance_to_walls(widened, x) - clearance_at_walls * target_size(at, x);
+    const double size = target_size(at, x);
+    double beyond = distance_to_walls(widened, x) - clearance_at_walls * size;
+    for (const Shape& shape : at.shapes)
+        if (reaches(reached_faces(shape), patch.value))
+            beyond = std::min(beyond, std::abs(signed_distance(shape, x)) - clearance_at_bodies * size);
+    return beyond;
 }
 
 double clearance_slope(const Snapshot& at) {

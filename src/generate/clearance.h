@@ -22,7 +22,7 @@ struct SizeAndClearance {
 /// How far `x` is beyond what is to be kept from walls and bodies [m]; negative: too near to one.
 [[nodiscard]] double clearance(const Snapshot& at, const Vec3& x);
 
-/// The same for `x` on the face `patch` of the box, against the edges of that face.
+/// The same for `x` on the face `patch` of the box, against the edges of that face and the bodies that reach through it.
 [[nodiscard]] double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x);
 
 /// The most that either changes per metre.

@@ -11,6 +11,9 @@
 #include "generate/resample.h"
 #include "generate/sampling.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace kropla {
 
 namespace {
@@ -27,12 +30,12 @@ void append(std::vector<Vec3>& to, const std::vector<Vec3>& more) {
 /// A seed for each independent stage of the sampling.
 std::uint64_t stage_seed(std::uint64_t seed, std::size_t stage) { return random_bits(seed, stage); }
 
-std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector<Vec3>& edge_points,
+std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector<Vec3>& given,
                               Random random, const Watch* watch) {
     const auto spacing = [&](const Vec3& x) { return spacing_on_face * target_size(at, x); };
     const auto room_for = [&](const Vec3& x) { return clearance_on_face(at, patch, x); };
     PointGrid taken;
-    for (const Vec3& x : edge_points)
+    for (const Vec3& x : given)
         if (lies_on_face(at.box, patch, x)) taken.insert(x, spacing(x));
     return fill_room(face_of_box(at.box, patch),
                      {spacing, spacing_on_face * at.size.growth, room_for, clearance_slope(at)}, taken,
@@ -59,6 +62,15 @@ std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& bou
                      random, watch);
 }
 
+/// The points of surfaces that lie on faces of the box.
+std::vector<Vec3> points_on_faces(const Box& box, const std::vector<Surface>& surfaces) {
+    std::vector<Vec3> points;
+    for (const Surface& surface : surfaces)
+        std::ranges::copy_if(surface.points, std::back_inserter(points),
+                             [&](const Vec3& x) { return shared_face(box, {x}).exists(); });
+    return points;
+}
+
 /// The points of the shells of all layers, where tets begin.
 std::vector<Vec3> sample_shells(const Snapshot& at, const std::vector<Surface>& walls) {
     std::vector<Vec3> points;
@@ -83,11 +95,12 @@ PointSet sample_points(const Snapshot& as_asked, std::uint64_t seed, const Watch
     }
     heed(watch, "drawing points", 0);
     const Snapshot at = bounded_by(set.surfaces, as_asked);
-    std::vector<Vec3> edge_points = box_corners(at.box);
-    append(edge_points, sample_box_edges(at));
+    std::vector<Vec3> given = points_on_faces(at.box, set.surfaces), edge_points = box_corners(at.box);
+    append(edge_points, sample_box_edges(at, given));
     append(set.points, edge_points);
+    append(given, edge_points);
     for (int face = 0; face < 6; ++face)
-        append(set.points, sample_face(at, Patch(face), edge_points, Random{stage_seed(seed, stage++)}, watch));
+        append(set.points, sample_face(at, Patch(face), given, Random{stage_seed(seed, stage++)}, watch));
     append(set.points, sample_inside(at, set.points, sample_shells(at, set.surfaces),
                                      Random{stage_seed(seed, stage)}, watch));
     return set;

@@ -9,12 +9,14 @@
 
 #include "generate/resample.h"
 
+#include "domain/cut.h"
 #include <kropla/domain/words.h>
 #include "generate/creases.h"
 #include "generate/triangle.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -147,24 +149,103 @@ void relax(Sheet& sheet, const Original& original, double size, const Watch* wat
     flip_for_angles(sheet, watch);
 }
 
-/// The points of the shape's surface, given by its own axes, where it stands; and back.
+/// The points of the shape's surface, given by its own axes, where it stands; and back. A cut one is given where it stands.
 void put_in_place(Surface& surface, const Shape& shape) {
+    if (shape.cut) return;
     for (Vec3& x : surface.points) x = shape.centre + rotated(shape.orientation, x);
 }
 void take_back(Surface& surface, const Shape& shape) {
+    if (shape.cut) return;
     for (Vec3& x : surface.points) x = rotated_back(shape.orientation, x - shape.centre);
+}
+
+/// All of the surface, where faces of a box cut it too.
+const TriangulatedSurface& whole_of(const Shape& shape) { return shape.cut ? shape.cut->whole : *shape.surface; }
+
+/// With creases also where faces cut it.
+Sheet whole_sheet(const Shape& shape) {
+    Sheet sheet = sheet_of(whole_of(shape));
+    if (!shape.cut) return sheet;
+    for (Half h : sheet.origin.indices()) {
+        const auto [low, high] = std::minmax({sheet.origin[h].value, sheet.target(h).value});
+        if (std::ranges::binary_search(shape.cut->lines, std::array{low, high})) sheet.crease[h] = 1;
+    }
+    find_holds(sheet);
+    return sheet;
+}
+
+/// Of the whole surface what is in the box.
+Surface part_in_box(const Surface& whole, const Bounds& box) {
+    Surface part;
+    std::vector<int> number(whole.points.size(), -1);
+    for (const auto& triangle : whole.triangles) {
+        const auto place = [&](std::size_t i) { return whole.points[as_size(triangle[i])]; };
+        if (!is_in(box, {place(0), place(1), place(2)})) continue;
+        auto& kept = part.triangles.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            int& n = number[as_size(triangle[i])];
+            if (n < 0) {
+                n = static_cast<int>(part.points.size());
+                part.points.push_back(place(i));
+            }
+            kept[i] = n;
+        }
+    }
+    for (const auto& [a, b] : whole.creases) {
+        const int p = number[as_size(a)], q = number[as_size(b)];
+        if (p >= 0 && q >= 0) part.creases.push_back({std::min(p, q), std::max(p, q)});
+    }
+    return part;
+}
+
+constexpr int none = -1;
+
+/// Joins the open edges to one point more, since a sheet is closed; returns its number. Its edges are creases.
+int close_by_tip(Surface& surface) {
+    std::map<std::array<int, 2>, std::array<int, 2>> open;  // edges by their ends; as their triangle goes along them
+    for (const auto& t : surface.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::array edge = {t[i], t[(i + 1) % 3]};
+            const auto [low, high] = std::minmax(edge[0], edge[1]);
+            if (!open.try_emplace({low, high}, edge).second) open.erase({low, high});
+        }
+    const auto tip = static_cast<int>(surface.points.size());
+    surface.points.push_back(surface.points.front());
+    for (const auto& [ends, edge] : open) {
+        surface.triangles.push_back({edge[1], edge[0], tip});
+        for (int end : ends) surface.creases.push_back({end, tip});
+    }
+    return tip;
+}
+
+void hold_tip(Sheet& sheet, Vertex tip) {
+    for (Half h : sheet.origin.indices())
+        if (sheet.origin[h] == tip || sheet.target(h) == tip) sheet.crease[h] = 1;
+}
+
+void open_again(Surface& surface, int tip) {
+    const auto has_tip = [&](const auto& vertices) { return std::ranges::find(vertices, tip) != vertices.end(); };
+    std::erase_if(surface.triangles, has_tip);
+    std::erase_if(surface.creases, has_tip);
+    surface.points.erase(surface.points.begin() + tip);
+    const auto renumber = [&](auto& all) {
+        for (auto& vertices : all)
+            for (int& v : vertices) v -= v > tip ? 1 : 0;
+    };
+    renumber(surface.triangles);
+    renumber(surface.creases);
 }
 
 }  // namespace
 
 Surface resampled(const Shape& shape, double size, const Watch* watch) {
-    Sheet sheet = sheet_of(*shape.surface);
-    const Original original{*shape.surface, Creases(sheet)};
+    Sheet sheet = whole_sheet(shape);
+    const Original original{whole_of(shape), Creases(sheet)};
     bring_near(sheet, original, size, watch);
     relax(sheet, original, size, watch);
     Surface surface = surface_of(sheet);
     put_in_place(surface, shape);
-    return surface;
+    return shape.cut ? part_in_box(surface, shape.cut->box) : surface;
 }
 
 Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
@@ -173,8 +254,12 @@ Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
         Shape& shape = bounded.shapes[body];
         if (!shape.surface) continue;
         std::vector<Vec3> points = walls[body].points;
-        for (Vec3& x : points) x -= shape.centre;
         try {
+            if (shape.cut) {
+                shape = shape_of_facets(std::move(points), walls[body].triangles, &shape.cut->box);
+                continue;
+            }
+            for (Vec3& x : points) x -= shape.centre;
             shape = shape_within(make_surface(std::move(points), walls[body].triangles), shape.centre);
         } catch (const SurfaceError& error) {
             throw DomainError("body " + std::to_string(body + 1) + ": at its target size of " +
@@ -186,8 +271,9 @@ Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
 }
 
 std::vector<Added> refine(Surface& surface, const std::vector<std::size_t>& triangles, const Shape& shape) {
-    const Original original{*shape.surface, Creases(sheet_of(*shape.surface))};
+    const Original original{whole_of(shape), Creases(whole_sheet(shape))};
     take_back(surface, shape);
+    const int tip = shape.cut ? close_by_tip(surface) : none;
     Sheet sheet = make_sheet(surface);
     std::vector<Added> added;
     const Array<Half, Vertex> before = sheet.origin;
@@ -202,8 +288,10 @@ std::vector<Added> refine(Surface& surface, const std::vector<std::size_t>& tria
         split_edge(sheet, longest, middle);
         added.push_back({shape.centre + rotated(shape.orientation, middle), half_edge});
     }
+    if (tip != none) hold_tip(sheet, Vertex(tip));
     flip_for_angles(sheet);
     surface = surface_of(sheet);
+    if (tip != none) open_again(surface, tip);
     put_in_place(surface, shape);
     return added;
 }

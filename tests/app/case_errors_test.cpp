@@ -181,7 +181,7 @@ TEST(CaseErrors, Bodies) {
         {"name = \"egg \\\"2\\\"\"", "name = \"droplet\"",
          "body[1].name (line 14): \"droplet\" is the name of body[0] already; names must differ"},
         {"\"sphere\"", "\"cube\"",
-         "body[0].shape (line 6): must be \"sphere\", \"ellipsoid\" or \"surface\", got \"cube\""},
+         "body[0].shape (line 6): must be \"sphere\", \"ellipsoid\", \"slab\", \"cylinder\" or \"surface\", got \"cube\""},
         {"radius = 0.001", "radius = 0.001\nfile = \"a.stl\"", "body[0].file (line 9): is of shape = \"surface\""},
         {"radius = 0.001", "radius = 0.001\nsize = 1e-3", "body[0].size (line 9): must be at most size.far = 0.0007, got 0.001"},
         {"\"sphere\"", "\"ellipsoid\"", "body[0].radius (line 8): an ellipsoid has axes = [a, b, c] instead"},

@@ -1,0 +1,226 @@
+// Triangles split along the planes of the box's faces, one plane after the other: a triangle across one becomes the parts of
+// its polygon on either side. Where an edge meets the plane is told once per edge, from its lower point, so that the parts
+// fit; the coordinate across the plane is the plane's own, exactly.
+
+#include "domain/cut.h"
+
+#include <kropla/base/error.h>
+#include <kropla/domain/solids.h>
+#include <kropla/domain/words.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace kropla {
+
+bool is_in(const Bounds& box, const Corners& triangle) {
+    return std::ranges::all_of(triangle, [&](const Vec3& x) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (x[axis] < box.min[axis] || x[axis] > box.max[axis]) return false;
+        return true;
+    });
+}
+
+namespace {
+
+/// [of the box's width] points nearer to a plane are put on it.
+constexpr double on_plane = 1e-9;
+
+using Triangle = std::array<int, 3>;
+
+struct Triangles {
+    std::vector<Vec3> points;
+    std::vector<Triangle> triangles;
+};
+
+double plane_of(const Bounds& box, int face) { return face % 2 == 0 ? box.min[face / 2] : box.max[face / 2]; }
+
+/// A point that is all but in a plane is put there.
+void snap(Vec3& x, const Bounds& box) {
+    for (int face = 0; face < box_faces; ++face) {
+        const int axis = face / 2;
+        const double plane = plane_of(box, face);
+        if (std::abs(x[axis] - plane) <= on_plane * (box.max[axis] - box.min[axis])) x[axis] = plane;
+    }
+}
+
+/// Splits triangles along the plane of one face.
+class Splitting {
+public:
+    Splitting(Triangles& of, const Bounds& box, int face)
+        : of_(of), box_(box), axis_(face / 2), plane_(plane_of(box, face)) {}
+
+    void split() {
+        std::vector<Triangle> parts;
+        for (const Triangle& t : of_.triangles) split(t, parts);
+        of_.triangles = std::move(parts);
+    }
+
+private:
+    [[nodiscard]] int side(int point) const {
+        const double away = of_.points[as_size(point)][axis_] - plane_;
+        return away < 0 ? -1 : away > 0 ? 1 : 0;
+    }
+    int point_on_plane(int a, int b) {
+        const auto [low, high] = std::minmax(a, b);
+        const auto [known, is_new] = made_.try_emplace({low, high}, static_cast<int>(of_.points.size()));
+        if (!is_new) return known->second;
+        const Vec3 &p = of_.points[as_size(low)], &q = of_.points[as_size(high)];
+        Vec3 x = p + (plane_ - p[axis_]) / (q[axis_] - p[axis_]) * (q - p);
+        snap(x, box_);
+        x[axis_] = plane_;
+        of_.points.push_back(x);
+        return known->second;
+    }
+    void split(const Triangle& t, std::vector<Triangle>& parts) {
+        for (int which : {-1, 1}) {
+            std::vector<int> polygon;
+            bool has_area = false;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const int a = t[i], b = t[(i + 1) % 3], at = side(a);
+                has_area |= at == which;
+                if (at == which || at == 0) polygon.push_back(a);
+                if (at * side(b) < 0) polygon.push_back(point_on_plane(a, b));
+            }
+            if (has_area) add(polygon, parts);
+        }
+    }
+    /// A triangle, or a quadrangle, by its shorter diagonal.
+    void add(const std::vector<int>& p, std::vector<Triangle>& parts) const {
+        if (p.size() == 3) {
+            parts.push_back({p[0], p[1], p[2]});
+            return;
+        }
+        const auto length = [&](std::size_t i, std::size_t k) {
+            return distance(of_.points[as_size(p[i])], of_.points[as_size(p[k])]);
+        };
+        const std::size_t first = length(0, 2) <= length(1, 3) ? 0 : 1;
+        parts.push_back({p[first], p[first + 1], p[first + 2]});
+        parts.push_back({p[first], p[first + 2], p[(first + 3) % 4]});
+    }
+
+    Triangles& of_;
+    const Bounds& box_;
+    int axis_;
+    double plane_;
+    std::map<std::pair<int, int>, int> made_;
+};
+
+/// Where the shape stands.
+Triangles in_place(const Shape& shape, const Bounds& box) {
+    Triangles of;
+    for (const Vec3& x : shape.surface->points()) of.points.push_back(shape.centre + rotated(shape.orientation, x));
+    of.triangles.assign(shape.surface->triangles().begin(), shape.surface->triangles().end());
+    for (Vec3& x : of.points) snap(x, box);
+    return of;
+}
+
+void refuse_triangles_in_faces(const Triangles& of, const Bounds& box) {
+    for (int face = 0; face < box_faces; ++face)
+        for (const Triangle& t : of.triangles)
+            if (std::ranges::all_of(t, [&](int p) { return of.points[as_size(p)][face / 2] == plane_of(box, face); }))
+                throw DomainError("a part of its surface lies in " + wall_name(face) + ", at " +
+                                  place_words(of.points[as_size(t[0])]) + "; it is to end before, or to reach through");
+}
+
+std::vector<std::array<int, 2>> lines_of(const Triangles& of, const Bounds& box) {
+    std::vector<std::array<int, 2>> lines;
+    for (const Triangle& t : of.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto [low, high] = std::minmax({t[i], t[(i + 1) % 3]});
+            for (int face = 0; face < box_faces; ++face)
+                if (of.points[as_size(low)][face / 2] == plane_of(box, face) &&
+                    of.points[as_size(high)][face / 2] == plane_of(box, face))
+                    lines.push_back({low, high});
+        }
+    std::ranges::sort(lines);
+    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    return lines;
+}
+
+/// Those in the box, and the points that they have.
+Triangles part_in(const Triangles& all, const Bounds& box) {
+    Triangles part;
+    std::vector<int> number(all.points.size(), -1);
+    for (const Triangle& t : all.triangles) {
+        const auto place = [&](std::size_t i) { return all.points[as_size(t[i])]; };
+        if (!is_in(box, {place(0), place(1), place(2)})) continue;
+        Triangle& kept = part.triangles.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            int& n = number[as_size(t[i])];
+            if (n < 0) {
+                n = static_cast<int>(part.points.size());
+                part.points.push_back(place(i));
+            }
+            kept[i] = n;
+        }
+    }
+    return part;
+}
+
+}  // namespace
+
+Shape cut_by(const Box& box, const Shape& shape) {
+    const Bounds within{box.min, box.max};
+    Triangles all = in_place(shape, within);
+    const auto is_beyond = [&](int face) {
+        return std::ranges::any_of(all.points, [&](const Vec3& x) {
+            const double away = x[face / 2] - plane_of(within, face);
+            return face % 2 == 0 ? away < 0 : away > 0;
+        });
+    };
+    bool is_cut = false;
+    for (int face = 0; face < box_faces; ++face) {
+        if (!is_beyond(face)) continue;
+        is_cut = true;
+        Splitting(all, within, face).split();
+    }
+    if (!is_cut) return shape;
+    refuse_triangles_in_faces(all, within);
+    Triangles part = part_in(all, within);
+    if (part.triangles.empty()) throw DomainError("nothing of its surface is in the box");
+    Shape cut = shape_of_facets(std::move(part.points), std::move(part.triangles), &within);
+    const auto lines = lines_of(all, within);
+    cut.cut = std::make_shared<const CutSurface>(
+        CutSurface{make_surface(std::move(all.points), std::move(all.triangles)), lines, within});
+    return cut;
+}
+
+Body cut_body(Body body) {
+    if (reached_faces(body.shape) == 0 || body.deformation) return body;
+    body.deformation = [motion = body.motion, centre = body.shape.centre](const Vec3& x, double t0, double t1) {
+        const Pose from = motion(t0), to = motion(t1);
+        if (from.displacement == to.displacement && from.rotation.axes == to.rotation.axes) return x;
+        const Vec3 in_body = rotated_back(from.rotation, x - centre - from.displacement);
+        return centre + to.displacement + rotated(to.rotation, in_body);
+    };
+    body.motion = [](double) { return Pose{}; };
+    return body;
+}
+
+void check_upright(const Body& body, double t) {
+    constexpr double upright = 1e-6;  // [-] cosine of the angle between surface and face
+    const CutSurface& cut = *body.shape.cut;
+    for (std::size_t i = 0; i < cut.whole.triangles().size(); ++i) {
+        const Corners c = cut.whole.tree().corners(i);
+        const Vec3 normal = normalised(cross(c[1] - c[0], c[2] - c[0]));
+        if (!is_in(cut.box, c)) continue;
+        for (int face = 0; face < box_faces; ++face) {
+            const int axis = face / 2;
+            const double width = cut.box.max[axis] - cut.box.min[axis];
+            if (std::abs(normal[axis]) <= upright) continue;
+            for (const Vec3& x : c)
+                if (x[axis] == plane_of(cut.box, face) &&
+                    std::abs(body.deformation(x, 0, t)[axis] - x[axis]) > on_plane * width)
+                    throw DomainError(named(body) + ": at t = " + time_words(t) + " its motion takes it through " +
+                                      wall_name(face) + ", on which it does not stand upright at " + place_words(x) +
+                                      ": a motion along that wall would do, or one with kind = \"field\"");
+        }
+    }
+}
+
+}  // namespace kropla

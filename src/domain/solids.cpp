@@ -1,0 +1,84 @@
+// Blocks and cylinders, as surfaces of triangles.
+
+#include <kropla/domain/solids.h>
+
+#include <kropla/base/error.h>
+#include "domain/triangulated_surface.h"
+#include <kropla/domain/words.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace kropla {
+
+namespace {
+
+/// [of the box's width] how far what reaches through a face is taken to go on behind it: more than a triangle there.
+constexpr double beyond = 0.1;
+/// [of the box's width] what ends nearer to a face ends in it.
+constexpr double in_face = 1e-9;
+/// of a cylinder: the polygon's corners stand out of the circle, and its middles within, by less than 1e-4 radii.
+constexpr int sides = 180;
+
+/// A triangle of the block by its corners 0 ... 7, of which bit `axis` tells the side along that axis.
+constexpr std::array<std::array<int, 3>, 12> of_block = {{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                                          {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}}};
+
+/// By how much the end of a cylinder at `end`, whose axis goes on along `outwards`, is to go on so that all of its disc is
+/// beyond the faces in which its middle is, or beyond them already; negative where it goes on far behind them.
+double going_on(const Box& box, const Vec3& end, const Vec3& outwards, double radius) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (int face = 0; face < box_faces; ++face) {
+        const int axis = face / 2;
+        const double width = box.max[axis] - box.min[axis], sign = face % 2 == 0 ? -1 : 1;
+        const double past = sign * (end[axis] - (face % 2 == 0 ? box.min[axis] : box.max[axis]));
+        const double slope = sign * outwards[axis];
+        if (past < -in_face * width || !(slope > 0)) continue;
+        const double reach = radius * std::sqrt(std::max(0.0, 1 - slope * slope));
+        most = std::max(most, (beyond * width + reach - past) / slope);
+    }
+    return std::isfinite(most) ? most : 0;
+}
+
+}  // namespace
+
+Shape slab(const Box& box, const Vec3& min, const Vec3& max) {
+    Vec3 low = min, high = max;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(min[axis] < max[axis]))
+            throw DomainError(std::string("its min is not below its max along ") + "xyz"[axis] + ": " + metres(min[axis]) +
+                              " and " + metres(max[axis]));
+        const double width = box.max[axis] - box.min[axis];
+        if (min[axis] <= box.min[axis] + in_face * width) low[axis] = box.min[axis] - beyond * width;
+        if (max[axis] >= box.max[axis] - in_face * width) high[axis] = box.max[axis] + beyond * width;
+    }
+    std::vector<Vec3> points;
+    for (int corner = 0; corner < 8; ++corner)
+        points.push_back({(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                          (corner & 4) != 0 ? high.z : low.z});
+    return cut_by(box, shape_within(std::move(points), {of_block.begin(), of_block.end()}));
+}
+
+Shape cylinder(const Box& box, const Vec3& from, const Vec3& to, double radius) {
+    if (!(distance(from, to) > 0)) throw DomainError("its two ends are in one place: " + place_words(from));
+    const Vec3 along = normalised(to - from);
+    const Vec3 start = from - going_on(box, from, -along, radius) * along, end = to + going_on(box, to, along, radius) * along;
+    const Vec3 off = std::abs(along.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = normalised(cross(along, off)), v = cross(along, u);
+    const double turn = 2 * std::numbers::pi / sides;
+    const double outer = radius * std::sqrt(turn / std::sin(turn));  // the polygon has the circle's area
+    std::vector<Vec3> points = {start, end};
+    std::vector<std::array<int, 3>> triangles;
+    for (int i = 0; i < sides; ++i) {
+        const Vec3 out = outer * (std::cos(i * turn) * u + std::sin(i * turn) * v);
+        points.push_back(start + out);
+        points.push_back(end + out);
+        const int a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % sides);
+        triangles.insert(triangles.end(), {{0, b, a}, {1, a + 1, b + 1}, {a, b, a + 1}, {b, b + 1, a + 1}});
+    }
+    return cut_by(box, shape_within(std::move(points), triangles));
+}
+
+}  // namespace kropla

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <kropla/domain/domain.h>
+
+namespace kropla {
+
+// Bodies with flat faces and edges, and bodies that reach through faces of the box: an interface then ends on a face, in a
+// line along which its vertices slide.
+
+/// The block between these corners. What of it is out of the box is cut away; a side that lies in a face of the box, or
+/// beyond, is taken for the body reaching through that face.
+/// Throws DomainError if the block is empty, or nothing of its surface is in the box.
+[[nodiscard]] Shape slab(const Box& box, const Vec3& min, const Vec3& max);
+
+/// The cylinder of this radius [m] about the line from one point to the other. What of it is out of the box is cut away; an
+/// end whose middle lies in a face of the box, or beyond, is taken for the body reaching through that face.
+/// Throws DomainError if it has no length, or nothing of its surface is in the box.
+[[nodiscard]] Shape cylinder(const Box& box, const Vec3& from, const Vec3& to, double radius);
+
+/// What of a shape that triangles bound is within the box, its centre the centroid of that; the shape itself if that is all
+/// of it. Throws DomainError if nothing of its surface is in the box, if one of its triangles lies in a face of the box, or
+/// if it reaches through all six.
+[[nodiscard]] Shape cut_by(const Box& box, const Shape& shape);
+
+/// A body with such a shape, which its motion takes along: of a rigid motion, which turns it about the centroid of what is in
+/// the box, the deformation that is it. Where it reaches through faces, the lines in which it meets them move along these.
+[[nodiscard]] Body cut_body(Body body);
+
+/// Throws DomainError if a body goes, from its start to the time `t` [s], through a face on which it does not stand upright:
+/// what is cut off would be another part, with another line. With place, time and what would do.
+void check_upright(const Body& body, double t);
+
+}  // namespace kropla

@@ -1,0 +1,98 @@
+// Slabs, cylinders and surfaces that are cut: their keys, and a run.
+#include "app/case.h"
+#include "case_text.h"
+#include "run_results.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace kropla {
+namespace {
+
+constexpr std::string_view pool_case = R"toml([domain]
+min = [-1, -1, 0]
+max = [1, 1, 2]
+[[body]]
+name = "pool"
+shape = "slab"
+min = [-1, -1, 0]
+max = [1, 1, 0.5]
+[[body]]
+name = "wire"
+shape = "cylinder"
+from = [0, 0, 1.5]
+to = [0, 0, 2]
+radius = 0.25
+[body.motion]
+z = "-0.3*t"
+[size]
+surface = 0.15
+growth = 0.3
+far = 0.3
+[time]
+end = 0.5
+steps = 3
+)toml";
+
+std::string refused(std::string_view from, std::string_view to) { return refusal(replaced(pool_case, from, to)); }
+
+}  // namespace
+
+TEST(CaseSolids, AreReadAndWritten) {
+    const Case it = parse_case(std::string(pool_case), "case.toml");
+    const Body &pool = it.domain.bodies[0], &wire = it.domain.bodies[1];
+    EXPECT_EQ(reached_faces(pool.shape), 0b011111u);
+    EXPECT_NEAR(volume(pool.shape), 2, 1e-14);
+    EXPECT_EQ(reached_faces(wire.shape), 0b100000u);
+    EXPECT_NEAR(volume(wire.shape), std::numbers::pi * 0.0625 * 0.5, 1e-14);
+    EXPECT_EQ(pool.deformation({0.1, 0.2, 0.3}, 0, 1), (Vec3{0.1, 0.2, 0.3}));
+    EXPECT_NEAR(wire.deformation({0.1, 0.2, 1.7}, 0, 1).z, 1.4, 1e-15);
+    const std::string written = to_toml(it);
+    EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
+}
+
+TEST(CaseSolids, RefusalsNameKeyAndLine) {
+    EXPECT_EQ(refused("max = [1, 1, 0.5]", "max = [1, 1, 0]"),
+              "case.toml: body[0].max (line 8): its min is not below its max along z: 0 m and 0 m");
+    EXPECT_EQ(refused("max = [1, 1, 0.5]", "max = [1, 1, 2]"), "case.toml: body[0].max (line 8): nothing of its surface is in the box");
+    EXPECT_EQ(refused("max = [1, 1, 0.5]\n", ""), "case.toml: body[0].max (line 4): is missing; it must be 3 finite numbers [x, y, z]");
+    EXPECT_EQ(refused("to = [0, 0, 2]", "to = [0, 0, 1.5]"),
+              "case.toml: body[1].to (line 13): its two ends are in one place: (0, 0, 1.5) m");
+    EXPECT_EQ(refused("radius = 0.25", "radius = 0.25\ncentre = [0, 0, 0]"),
+              "case.toml: body[1].centre (line 15): a cylinder has from, to and radius instead");
+    EXPECT_EQ(refused("radius = 0.25", "radius = 0.25\ncut = true"), "case.toml: body[1].cut (line 15): is of shape = \"surface\"");
+    EXPECT_EQ(refused("-0.3*t", "0.1 - 0.3*t"),
+              "case.toml: body[1].motion.z (line 16): must be 0 at t = 0 for a body that is cut; this one reaches through the wall z max");
+    EXPECT_EQ(refused("[body.motion]", "[body.layer]\ncount = 2\n[body.motion]"),
+              "case.toml: body[1].layer (line 15): stands on bodies that are wholly in the box; this one reaches through the wall z max");
+    EXPECT_EQ(refused("steps = 3", "steps = 3\n[flow]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n"),
+              "case.toml: flow (line 24): is solved for around bodies that move rigidly, wholly in the box; body \"pool\" reaches "
+              "through faces of the box");
+}
+
+TEST(RunSolids, AWireIsFedTowardsAPool) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", std::string(pool_case));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const auto columns = lasting_columns(folder.path / "d");
+    for (const std::string& v : columns.at("volume_pool")) EXPECT_NEAR(std::stod(v), 2, 1e-12);
+    const double area = std::numbers::pi * 0.0625;
+    for (std::size_t step = 0; step < 3; ++step)
+        EXPECT_NEAR(std::stod(columns.at("volume_wire")[step]) / (area * (0.55 + 0.05 * static_cast<double>(step))), 0.9, 0.05);
+    for (const std::string& r : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(r), 6);
+    EXPECT_EQ(kropla_program(folder, "check d").code, 0);
+}
+
+TEST(RunSolids, ThroughAFaceOnlyUpright) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", replaced(pool_case, "from = [0, 0, 1.5]", "from = [-0.3, 0, 1.5]"));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(it.code, 2);
+    EXPECT_NE(it.err.find("body \"wire\": at t = 166.667 ms its motion takes it through the wall z max, on which it does not stand upright at ("),
+              std::string::npos) << it.err;
+}
+
+}  // namespace kropla
