@@ -2,6 +2,7 @@
 #include "app/case_body.h"
 
 #include "app/deformation.h"
+#include "app/local_size.h"
 #include <kropla/base/error.h>
 #include "domain/triangulated_surface.h"
 #include "io/triangles.h"
@@ -259,7 +260,7 @@ void read_bodies(const CaseTable& file, Case& it) {
         table.allow({"name", "shape", "centre", "radius", "axes", "file", "scale", "rotation", "size", "motion", "layer"});
         WrittenBody written;
         Body body{read_name(table, it.domain.bodies), read_shape(table, written)};
-        if (table.has("size")) body.size = table.length("size");
+        if (table.has("size") && !is_of_place(table, "size")) body.size = table.length("size");
         read_motion(table, it, body, written);
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
         if (body.layer && body.deformation)
