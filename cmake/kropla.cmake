@@ -51,5 +51,8 @@ function(kropla_test folder)
     target_include_directories(test_${folder} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     kropla_inside(test_${folder})
     kropla_settings(test_${folder})
+    if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # a second of each file; ccache and its like look files up without it
+        target_precompile_headers(test_${folder} PRIVATE <gtest/gtest.h>)
+    endif()
     gtest_discover_tests(test_${folder} TEST_PREFIX ${folder}. DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -99,6 +99,9 @@ RUNS |= {
                                "volume_rotor [m^3]": (0.125 - 1e-13, 0.125 + 1e-13), "energy_error [J]": (-1e-9, 1e-9),
                                "temperature_mean_rotor [K]": (382, 383)}),
 }
+RUNS["gear"] = ShortRun(["time.end=0.001", "time.steps=2"],
+                        {"max_aspect_ratio": (5, 7.6), "volume_wheel [m^3]": (8.1072062482888e-10, 8.1072062482890e-10),
+                         "energy_error [J]": (-1e-12, 1e-12), "temperature_mean_wheel [K]": (396, 398)})
 CONSERVED = 1e-12  # [-] energy and volumes over the whole run, and each transfer: rounding
 
 

@@ -60,7 +60,8 @@ std::vector<BodySurface> MeshStep::surfaces_to_adapt(const Snapshot& at_time) {
     const std::vector<char> in_gaps = at_time.narrow ? are_in_gaps(at_time) : std::vector<char>(domain_.bodies.size(), 0);
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body) {
         const Body& it = domain_.bodies[body];
-        if (it.deformation || (!it.layer && (is_uneven_[body] != 0 || in_gaps[body] != 0))) bodies.push_back(body);
+        const bool uneven = is_uneven_[body] != 0 || in_gaps[body] != 0 || has_local_size(at_time, body);
+        if (it.deformation || (!it.layer && uneven)) bodies.push_back(body);
     }
     auto surfaces = body_surfaces(current_, bodies);
     std::erase_if(surfaces, [&](const BodySurface& surface) {

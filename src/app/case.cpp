@@ -11,6 +11,7 @@
 #include "app/case_patches.h"
 #include "app/case_setting.h"
 #include "app/case_table.h"
+#include "app/local_size.h"
 #include "app/mesh_size.h"
 #include <kropla/base/error.h>
 #include <kropla/domain/words.h>
@@ -51,11 +52,26 @@ void check_resolved(const CaseTable& table, const char* key, double size, const 
                                               least_resolved * farthest, farthest));
 }
 
+/// The size of bodies that have none of their own: a length, or of the place.
+void read_surface_size(const CaseTable& table, const std::vector<Body>& bodies, SizeField& size) {
+    if (!is_of_place(table, "surface")) {
+        size.surface = table.length("surface");
+        return;
+    }
+    std::vector<Shape> shapes;
+    for (const Body& body : bodies)
+        if (!body.size) shapes.push_back(shape_at(body, 0));
+    const PlacedSize placed = read_placed_size(table, "surface", shapes);
+    size.surface = placed.most;
+    size.local = placed.size;
+}
+
 /// With `own`, the size that a mesh has already, whatever is left out is of that.
-SizeField read_size(const CaseTable& table, const Box& box, const std::optional<SizeField>& own) {
+SizeField read_size(const CaseTable& table, const Domain& domain, const std::optional<SizeField>& own) {
+    const Box& box = domain.box;
     table.allow({"surface", "growth", "far", "least"});
     SizeField size = own.value_or(SizeField{});
-    if (!own || table.has("surface")) size.surface = table.length("surface");
+    if (!own || table.has("surface")) read_surface_size(table, domain.bodies, size);
     if (!own || table.has("surface")) check_resolved(table, "surface", size.surface, box);
     if (!own || table.has("far")) size.far = table.length("far");
     else size.far = std::max(size.far, size.surface);
@@ -68,6 +84,18 @@ SizeField read_size(const CaseTable& table, const Box& box, const std::optional<
     if (least_size(size) > size.surface) table.refuse_value("least", fmt::format("must be at most surface = {}", size.surface));
     if (size.least) check_resolved(table, "least", *size.least, box);
     return size;
+}
+
+/// Bodies' own sizes that are of the place.
+void read_placed_sizes(const CaseTable& file, Domain& domain) {
+    const std::vector<CaseTable> tables = file.tables("body");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        if (!is_of_place(tables[i], "size")) continue;
+        Body& body = domain.bodies[i];
+        const PlacedSize placed = read_placed_size(tables[i], "size", std::array{shape_at(body, 0)});
+        body.size = placed.most;
+        body.local_size = placed.size;
+    }
 }
 
 /// Bodies' own sizes obey the rules of size.surface.
@@ -94,8 +122,9 @@ void read_domain(const CaseTable& file, const std::string& name, Case& it) {
         it.domain.box = read_box(table);
         read_bodies(file, it);
     }
+    read_placed_sizes(file, it.domain);
     if (own && !file.has("size")) it.domain.size = *own;
-    else it.domain.size = read_size(file.table("size"), it.domain.box, own);
+    else it.domain.size = read_size(file.table("size"), it.domain, own);
     check_body_sizes(file, it.domain);
 }
 

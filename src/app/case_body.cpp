@@ -3,6 +3,7 @@
 
 #include "app/case_shape.h"
 #include "app/deformation.h"
+#include "app/local_size.h"
 #include <kropla/base/error.h>
 #include <kropla/domain/solids.h>
 #include <kropla/domain/words.h>
@@ -220,7 +221,7 @@ void read_bodies(const CaseTable& file, Case& it) {
                      "size", "motion", "layer"});
         WrittenBody written;
         Body body{read_name(table, it.domain.bodies), read_shape(table, it.domain.box, written)};
-        if (table.has("size")) body.size = table.length("size");
+        if (table.has("size") && !is_of_place(table, "size")) body.size = table.length("size");
         read_motion(table, it, body, written);
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
         if (body.layer && body.deformation)

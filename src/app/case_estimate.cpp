@@ -3,6 +3,7 @@
 // the grid takes the size no closer than one of its own cells, and what is left out on either side of the
 // surface is added in closed form: area times the integral of 1/h^3 over the distance.
 #include "app/case.h"
+#include "app/local_size.h"
 #include "domain/triangulated_surface.h"
 
 #include <algorithm>
@@ -18,9 +19,14 @@ double size_at(const SizeField& size, double distance) {
     return std::min(size.far, size.surface + size.growth * distance);
 }
 
-/// The size field of a body: its surface may be finer than others'.
-SizeField size_of(const Snapshot& at, std::size_t body) {
-    return {surface_size(at, body), at.size.growth, at.size.far};
+/// The size field of a body about this place of its surface: it may be finer than others', or than elsewhere.
+SizeField size_of(const Snapshot& at, std::size_t body, const Vec3& x) {
+    return {surface_size(at, body, x), at.size.growth, at.size.far};
+}
+
+/// The places of the body's surface that stand for all of it.
+std::vector<Vec3> places_of(const Snapshot& at, std::size_t body) {
+    return has_local_size(at, body) ? places_on(at.shapes[body]) : std::vector{at.shapes[body].centre};
 }
 
 /// The target size at `x`, no closer to a body than `cell`.
@@ -28,7 +34,7 @@ double coarse_size(const Snapshot& at, const Vec3& x, double cell) {
     double least = at.size.far;
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
         const double distance = std::abs(signed_distance(at.shapes[body], x));
-        least = std::min(least, size_at(size_of(at, body), std::max(cell, distance)));
+        least = std::min(least, size_at(size_of(at, body, x), std::max(cell, distance)));
     }
     return least;
 }
@@ -78,9 +84,12 @@ double estimate_tets(const Domain& domain) {
     double tets = sum * span.x * span.y * span.z / (static_cast<double>(nx) * ny * nz);
     for (std::size_t i = 0; i < at.shapes.size(); ++i) {
         const Shape& body = at.shapes[i];
-        const SizeField size = size_of(at, i);
         const double inside = std::min({cell, body.semi_axes.x, body.semi_axes.y, body.semi_axes.z});
-        tets += area(body) * (excess(size, cell) + excess(size, inside)) * per_volume(1);
+        const std::vector<Vec3> places = places_of(at, i);
+        for (const Vec3& x : places) {
+            const SizeField size = size_of(at, i, x);
+            tets += area(body) / static_cast<double>(places.size()) * (excess(size, cell) + excess(size, inside)) * per_volume(1);
+        }
     }
     return tets;
 }

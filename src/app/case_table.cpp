@@ -230,6 +230,16 @@ Formula CaseTable::formula(std::string_view key, const toml::node& value, std::s
     return {std::move(expression), toml_text(*text)};
 }
 
+Expression CaseTable::expression(std::string_view key, Variables variables) const {
+    try {
+        Expression found = compiled(text(key), variables);
+        remember(key);
+        return found;
+    } catch (const CaseError& error) {
+        refuse(key, error.what());
+    }
+}
+
 std::vector<Formula> CaseTable::formulas(std::string_view key, std::size_t count, std::string_view meaning,
                                          Variables variables) const {
     const std::string must = fmt::format("must be {} finite numbers or expressions in quotes {}", count, meaning);
@@ -282,7 +292,8 @@ const std::string& CaseTable::file() const { return reading_->file; }
 
 void CaseTable::refuse_value(std::string_view key, std::string_view must) const {
     const toml::node& value = node(key, must);
-    const bool is_expression = value.is_string() && reading_->written.contains(full_name(key));
+    const bool is_expression = value.is_string() && reading_->written.contains(full_name(key)) &&
+                               std::ranges::none_of(names_in(text(key)), is_variable);
     refuse(key, fmt::format("{}, got {}{}", must, shown(value),
                             is_expression ? fmt::format(" = {}", *number_in(key, value, must)) : ""));
 }

@@ -79,6 +79,9 @@ public:
     /// Finite at t = 0 and `probe`; of the temperature, anything.
     [[nodiscard]] Formula formula(std::string_view key, Variables variables, const Vec3& probe = {}) const;
 
+    /// An expression in quotes.
+    [[nodiscard]] Expression expression(std::string_view key, Variables variables) const;
+
     /// As many of them in brackets; `meaning` names them in a refusal.
     [[nodiscard]] std::vector<Formula> formulas(std::string_view key, std::size_t count,
                                                 std::string_view meaning, Variables variables) const;

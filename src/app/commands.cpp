@@ -222,11 +222,15 @@ void describe_conversions(CLI::App& app, Request& request) {
     CLI::App* improve = app.add_subcommand("improve", "Makes the tets of a mesh better, its boundary and interfaces kept");
     improve->add_option("IN", request.improve.in, "the mesh to read")->required();
     improve->add_option("-o,--output", request.improve.out, "the mesh to write")->required()->type_name("OUT");
+    improve->add_flag("--remesh-surface", request.improve.remesh_surface,
+                      "also split, collapse, swap and slide the triangles where two regions meet, volumes kept");
     describe_threads(*improve, request.improve.threads);
     improve->footer(
         "Formats as of kropla convert:\n"
         "  kropla improve tank.msh -o better.msh\n"
-        "Vertices on boundary and interfaces stay, and so do prisms. A table tells how good the mesh was and is.");
+        "  kropla improve tank.msh -o better.msh --remesh-surface\n"
+        "Vertices on boundary and interfaces stay, and so do prisms; with --remesh-surface those on interfaces between\n"
+        "two regions, away from the boundary, do not. A table tells how good the mesh was and is.");
 }
 
 void describe_others(CLI::App& app, Request& request) {

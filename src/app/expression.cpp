@@ -34,6 +34,7 @@ std::string known_names(Variables variables, const Constants& constants) {
     switch (variables) {
         case Variables::none: break;
         case Variables::time: names = "t, "; break;
+        case Variables::place: names = "x, y, z, "; break;
         case Variables::time_and_place: names = "t, x, y, z, "; break;
         case Variables::temperature: names = "T, "; break;
     }
@@ -113,8 +114,10 @@ struct Expression::Compiled {
     void compile() {
         parser.DefineConst("pi", std::numbers::pi);
         for (const auto& [name, value] : constants) parser.DefineConst(name, value);
-        if (variables != Variables::none) parser.DefineVar(variables == Variables::temperature ? "T" : "t", &t);
-        if (variables == Variables::time_and_place) {
+        const bool of_place = variables == Variables::place || variables == Variables::time_and_place;
+        if (variables != Variables::none && variables != Variables::place)
+            parser.DefineVar(variables == Variables::temperature ? "T" : "t", &t);
+        if (of_place) {
             parser.DefineVar("x", &place.x);
             parser.DefineVar("y", &place.y);
             parser.DefineVar("z", &place.z);

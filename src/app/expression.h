@@ -10,9 +10,9 @@
 
 namespace kropla {
 
-/// What an expression may speak of beside constants: nothing, the time `t` [s] alone, or the place `x`, `y`, `z` [m]
-/// as well; or the temperature `T` [K] alone, which then stands for the time in every question.
-enum class Variables { none, time, time_and_place, temperature };
+/// What an expression may speak of beside constants: nothing, the time `t` [s] alone, the place `x`, `y`, `z` [m] alone, or
+/// both; or the temperature `T` [K] alone, which then stands for the time in every question.
+enum class Variables { none, time, place, time_and_place, temperature };
 
 /// Constants that the user has given names: parameters.
 using Constants = std::map<std::string, double, std::less<>>;

@@ -2,6 +2,7 @@
 
 #include "app/commands.h"
 #include "app/distribution.h"
+#include "app/interface_patches.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include <kropla/base/error.h>
@@ -9,7 +10,7 @@
 #include <kropla/io/mesh_file.h>
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/topology.h>
-#include <kropla/step/improve_mesh.h>
+#include <kropla/step/remesh_interfaces.h>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -82,10 +83,12 @@ void drop_fields(FileCells& cells, const char* why) {
 struct Quality {
     QualitySummary summary;
     std::size_t above_10 = 0;
+    TriangleSummary surfaces = {};  // of interfaces
 };
 
 Quality quality_of(const Mesh& mesh) {
     Quality quality{summarise_quality(mesh)};
+    quality.surfaces = summarise_triangles(mesh, interfaces(mesh));
     for (const Tet t : all_tets(mesh)) quality.above_10 += !(aspect_ratio(mesh, t) <= 10) ? 1u : 0u;
     return quality;
 }
@@ -104,7 +107,27 @@ void print_table(const Quality& before, const Quality& after, double seconds) {
     row("least dihedral [deg]", a.min_dihedral, b.min_dihedral, "{:.2f}");
     row("largest dihedral [deg]", a.max_dihedral, b.max_dihedral, "{:.2f}");
     row("tets above R/r 10", before.above_10, after.above_10, "{}");
+    if (before.surfaces.triangles > 0) {
+        row("triangles of interfaces", before.surfaces.triangles, after.surfaces.triangles, "{}");
+        row("their least angle [deg]", before.surfaces.least_angle, after.surfaces.least_angle, "{:.2f}");
+        row("their largest angle [deg]", before.surfaces.greatest_angle, after.surfaces.greatest_angle, "{:.2f}");
+    }
     fmt::print("{:<26}{:>24}\n", "seconds", fmt::format("{:.2f}", seconds));
+}
+
+/// Says which interfaces stay as they are.
+std::vector<LooseInterface> loose_interfaces_told(const FixedMesh& fixed, const FileCells& cells) {
+    auto loose = loose_interfaces(fixed, cells);
+    for (const Interface& it : interfaces(fixed.mesh)) {
+        const auto is_it = [&](const LooseInterface& other) {
+            return other.interface.inner == it.inner && other.interface.outer == it.outer;
+        };
+        if (std::ranges::none_of(loose, is_it))
+            fmt::print("the interface of regions {} and {} stays as it is: {}\n", it.outer.value, it.inner.value,
+                       it.is_apart ? "it has several patches, or one on a part of it"
+                                   : "it is at the boundary, at a third region, or touches itself");
+    }
+    return loose;
 }
 
 }  // namespace
@@ -138,12 +161,18 @@ int improve_mesh_file(const MeshFiles& files) {
     std::optional<tbb::global_control> threads;
     if (files.threads > 0)
         threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(files.threads));
+    std::vector<LooseInterface> loose;
+    if (files.remesh_surface) loose = loose_interfaces_told(fixed, cells);
+    take_facets(fixed, loose, cells);
     const Quality before = quality_of(fixed.mesh);
     const auto start = std::chrono::steady_clock::now();
-    (void)improve_mesh(fixed.mesh, {.watch = &watch});
+    std::vector<Interface> free;
+    for (const LooseInterface& it : loose) free.push_back(it.interface);
+    (void)remesh_interfaces(fixed.mesh, free, {.watch = &watch});
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const Quality after = quality_of(fixed.mesh);
     note(put_back(fixed, cells), "facet within a region went", "facets within regions went");
+    give_facets(loose, cells);
     write_mesh_file(files.out, cells, &watch);
     print_table(before, after, seconds);
     fmt::print("{}", describe(files.out, cells));

@@ -39,7 +39,8 @@ std::shared_ptr<const BodyTree> tree_of(const Snapshot& at) {
         const double most = std::max({norm(held.min), norm(held.max), norm(at.box.min), norm(at.box.max)});
         const Vec3 margin = widened * most * Vec3{1, 1, 1};
         boxes.push_back({held.min - margin, held.max + margin});
-        least_size = std::min(least_size, surface_size(at, body));
+        const double of_body = surface_size(at, body);
+        least_size = std::min(least_size, has_local_size(at, body) ? std::min(of_body, kropla::least_size(at.size)) : of_body);
         if (at.layers[body]) most_thickness = std::max(most_thickness, thickness(*at.layers[body]));
     }
     return std::make_shared<const BodyTree>(BodyTree{BoxTree(std::move(boxes)), least_size, most_thickness});
@@ -57,6 +58,7 @@ Snapshot snapshot(const Domain& domain, double t) {
         at.shapes.push_back(shape_at(body, t));
         at.layers.push_back(body.layer);
         at.sizes.push_back(body.size);
+        at.local_sizes.push_back(body.size ? body.local_size : domain.size.local);
     }
     plant_tree(at);
     return at;
@@ -83,6 +85,17 @@ double surface_size(const Snapshot& at, std::size_t body) {
     const LayerOptions& layer = *at.layers[body];
     const double top = layer.first_height * std::pow(layer.growth, layer.count - 1);
     return std::min(asked_size(at, body), most_per_height * top);
+}
+
+double surface_size(const Snapshot& at, std::size_t body, const Vec3& x) {
+    const double most = surface_size(at, body);
+    if (!has_local_size(at, body)) return most;
+    return std::min(most, std::max(least_size(at.size), at.local_sizes[body](closest_point(at.shapes[body], x))));
+}
+
+double size_slope(const Snapshot& at) {
+    const bool local = std::ranges::any_of(at.local_sizes, [](const LocalSize& size) { return bool(size); });
+    return at.size.growth + (local ? steepest_growth : 0);
 }
 
 double outward_shift(const Shape& shape, double size) {
@@ -213,7 +226,7 @@ double target_size(const Snapshot& at, const DistancesFrom& distances) {
                            [&](double d) { return at.tree->least_size + at.size.growth * d; },
                            [&](std::size_t body) {
                                const double rise = at.size.growth * rising_distance(at, body, distances(body));
-                               return surface_size(at, body) + rise;
+                               return surface_size(at, body, distances.place()) + rise;
                            });
     return at.narrow ? size_in_gap(at, distances.place(), size) : size;
 }

@@ -25,6 +25,9 @@ using Motion = std::function<Pose(double t)>;
 /// places in the body and around it; where `t1` is `t0`, `x`.
 using Deformation = std::function<Vec3(const Vec3& x, double t0, double t1)>;
 
+/// A length at each place [m], positive and finite; a pure function, which several threads may ask.
+using LocalSize = std::function<double(const Vec3& x)>;
+
 /// The prism layer asked for at a body's surface; the k-th prism of a column, from 0, is
 /// first_height * growth^k high.
 struct LayerOptions {
@@ -56,6 +59,8 @@ struct Body {
     Motion motion = [](double) { return Pose{}; };
     std::optional<LayerOptions> layer = {};          // of prisms at its surface; none: tets on both sides
     std::optional<double> size = {};                 // [m] target edge length at its surface; none: size.surface
+    LocalSize local_size = {};                       // with `size`, which is the most: what places of its surface have, wherever
+                                                     //   it is; none: `size` everywhere
     Deformation deformation = {};  // none: it moves rigidly. Else its surface goes with it, motion is not asked, and of a
                                    //   moving mesh's domain `shape` is what the mesh has at its time
     bool keeps_volume = false;     // as it deforms, by an even shift along the normals of its surface
@@ -68,12 +73,14 @@ inline constexpr double steepest_growth = 0.5;
 /// The target edge length at distance R from the nearest body, or from its shell inside of it: min(far,
 /// surface + growth * R), with a growth of at most `steepest_growth`; and nowhere more than `largest_size`. In a gap
 /// between bodies without layers, or between one and a wall, it falls with the width, `gap_share` of it, down to `least`,
-/// once one of them is narrower than `narrow_gap` (Snapshot::narrow).
+/// once one of them is narrower than `narrow_gap` (Snapshot::narrow). `surface` may differ from place to place: at a body's
+/// nearest place it is `local`, but from `least` to `surface`. It should rise by no more than `steepest_growth` per metre.
 struct SizeField {
     double surface = 2e-4;  // [m]
     double growth = 0.1;    // [-] rise per metre of distance, 0 ... 1
     double far = 8e-4;      // [m], at least surface
     std::optional<double> least = {};  // [m], at most surface; none: a twentieth of it
+    LocalSize local = {};              // none: `surface` everywhere
 };
 [[nodiscard]] inline double least_size(const SizeField& size) { return size.least.value_or(size.surface / 20); }
 /// Target size by width of a gap: one cell across, its edges along the gap half as long again as the gap is wide.
@@ -109,6 +116,7 @@ struct Snapshot {
     bool narrow = false;                                   // target sizes fall in gaps
     std::shared_ptr<const TriangleTree> walls = {};
     std::vector<std::optional<double>> sizes = {};  // per body: its own at its surface [m]
+    std::vector<LocalSize> local_sizes = {};        // per body; none where its size is one
     std::shared_ptr<const BodyTree> tree = {};      // of `shapes`, by which many are asked fast; none: all are asked
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
@@ -122,6 +130,13 @@ struct Snapshot {
 /// layer ends in so thin a prism, as asked, that the first tets on triangles of that size would be more than
 /// twice as large, by the cube roots of their volumes.
 [[nodiscard]] double surface_size(const Snapshot& at, std::size_t body);
+/// The same at the place of its surface that is nearest to x, which is less where sizes are local.
+[[nodiscard]] double surface_size(const Snapshot& at, std::size_t body, const Vec3& x);
+[[nodiscard]] inline bool has_local_size(const Snapshot& at, std::size_t body) {
+    return body < at.local_sizes.size() && at.local_sizes[body];
+}
+/// How much the target size may rise per metre [-].
+[[nodiscard]] double size_slope(const Snapshot& at);
 /// The largest target size in the box [m]: size.far, or less where the box is so thin that cells of that size
 /// would reach from one wall to the opposite one.
 [[nodiscard]] double largest_size(const Box& box, const SizeField& size);

@@ -35,7 +35,7 @@ double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x) {
 
 double clearance_slope(const Snapshot& at) {
     const bool layered = std::ranges::any_of(at.layers, [](const auto& layer) { return layer.has_value(); });
-    return 1 + std::max(clearance_at_walls, clearance_at_bodies) * at.size.growth +
+    return 1 + std::max(clearance_at_walls, clearance_at_bodies) * size_slope(at) +
            (layered ? share_of_gap : 0);
 }
 

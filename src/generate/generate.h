@@ -35,14 +35,25 @@ struct Surface {
 /// Scales a surface around a shape's centre about it, until the polyhedron holds the shape's volume.
 void give_volume(Surface& surface, const Shape& shape);
 
+/// The edge length wanted at the places of a surface [m]: `most`, or what is `local`, which is no more.
+struct SurfaceSize {
+    double most;
+    LocalSize local = {};
+    [[nodiscard]] double operator()(const Vec3& x) const { return local ? local(x) : most; }
+};
+
 /// Covers the surface of a shape with well-shaped triangles of edge length near `size` [m]. Of an ellipsoid the polyhedron
 /// holds the volume to rounding: its vertices lie on the shape blown up about its centre,
 /// `outward_shift` (domain.h) away from its surface at most, and that surface runs between them and the
 /// triangles' middles. Of what triangles bound, sharp edges and corners are kept, and the vertices lie on the surface: a
 /// body with flat faces between such edges has its volume to rounding, of a curved part that of a polyhedron inscribed
 /// (resample.h).
-[[nodiscard]] Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed,
+[[nodiscard]] Surface triangulate_surface(const Shape& shape, const SurfaceSize& size, std::uint64_t seed,
                                           const Watch* watch = nullptr);
+[[nodiscard]] inline Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed,
+                                                 const Watch* watch = nullptr) {
+    return triangulate_surface(shape, SurfaceSize{size}, seed, watch);
+}
 
 /// The points from which the initial mesh is made: of each body's surface, of the box's corners, edges and
 /// faces, and inside; all at the target size, well apart, nowhere a gap that would hold another (maximal).

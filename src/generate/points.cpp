@@ -38,7 +38,7 @@ std::vector<Vec3> sample_face(const Snapshot& at, Patch patch, const std::vector
     for (const Vec3& x : given)
         if (lies_on_face(at.box, patch, x)) taken.insert(x, spacing(x));
     return fill_room(face_of_box(at.box, patch),
-                     {spacing, spacing_on_face * at.size.growth, room_for, clearance_slope(at)}, taken,
+                     {spacing, spacing_on_face * size_slope(at), room_for, clearance_slope(at)}, taken,
                      random, watch);
 }
 
@@ -58,7 +58,7 @@ std::vector<Vec3> sample_inside(const Snapshot& at, const std::vector<Vec3>& bou
     PointGrid taken;
     for (const Vec3& x : boundary_points) taken.insert(x, spacing(x));
     for (const Vec3& x : shell_points) taken.insert(x, spacing(x));
-    return fill_room(at.box, {spacing, spacing_inside * at.size.growth, room_for, clearance_slope(at)}, taken,
+    return fill_room(at.box, {spacing, spacing_inside * size_slope(at), room_for, clearance_slope(at)}, taken,
                      random, watch);
 }
 
@@ -81,6 +81,12 @@ std::vector<Vec3> sample_shells(const Snapshot& at, const std::vector<Surface>& 
     return points;
 }
 
+SurfaceSize size_on_surface(const Snapshot& at, std::size_t body) {
+    SurfaceSize size{surface_size(at, body)};
+    if (has_local_size(at, body)) size.local = [&at, body](const Vec3& x) { return surface_size(at, body, x); };
+    return size;
+}
+
 }  // namespace
 
 PointSet sample_points(const Snapshot& as_asked, std::uint64_t seed, const Watch* watch) {
@@ -89,7 +95,7 @@ PointSet sample_points(const Snapshot& as_asked, std::uint64_t seed, const Watch
     for (std::size_t body = 0; body < as_asked.shapes.size(); ++body) {
         heed(watch, "meshing surfaces", static_cast<double>(body) / static_cast<double>(as_asked.shapes.size()));
         set.surfaces.push_back(
-            triangulate_surface(as_asked.shapes[body], surface_size(as_asked, body), stage_seed(seed, stage++), watch));
+            triangulate_surface(as_asked.shapes[body], size_on_surface(as_asked, body), stage_seed(seed, stage++), watch));
         set.first_of_surface.push_back(static_cast<int>(set.points.size()));
         append(set.points, set.surfaces.back().points);
     }

@@ -40,25 +40,34 @@ struct Original {
     }
 };
 
+/// The size at an edge [m].
+double size_at(const Sheet& sheet, Half h, const SurfaceSize& size) {
+    return size.local ? size.local(0.5 * (sheet.place[sheet.origin[h]] + sheet.place[sheet.target(h)])) : size.most;
+}
+
 /// Once over the edges that there are, the longest first: in another order slivers are made. Returns how many.
-int split_long_edges(Sheet& sheet, const Original& original, double longest) {
+int split_long_edges(Sheet& sheet, const Original& original, const SurfaceSize& size) {
+    const auto is_long = [&](Half h) { return sheet.length(h) > split_above * size_at(sheet, h, size); };
     std::vector<std::pair<double, Half>> found;
     for (Half h : sheet.origin.indices())
-        if (sheet.alive(h) && h < sheet.twin[h] && sheet.length(h) > longest) found.emplace_back(-sheet.length(h), h);
+        if (sheet.alive(h) && h < sheet.twin[h] && is_long(h)) found.emplace_back(-sheet.length(h), h);
     std::ranges::sort(found);
     for (const auto& [length, h] : found)  // which may name another edge by now
-        if (sheet.length(h) > longest) split_edge(sheet, h, original.middle(sheet, h));
+        if (is_long(h)) split_edge(sheet, h, original.middle(sheet, h));
     return static_cast<int>(found.size());
 }
 
-int collapse_short_edges(Sheet& sheet, double shortest, double longest, const Watch* watch) {
+/// Those that are short for the size, or for `most` if that is less.
+int collapse_short_edges(Sheet& sheet, double most, const SurfaceSize& size, const Watch* watch) {
     constexpr int most_rounds = 20;
     int all = 0;
     for (int round = 0, done = 1; done > 0 && round < most_rounds; ++round) {
         heed(watch);
         done = 0;
         for (Half h : sheet.origin.indices()) {
-            if (!sheet.alive(h) || sheet.length(h) >= shortest || !may_collapse(sheet, h, longest)) continue;
+            if (!sheet.alive(h) || sheet.length(h) >= collapse_below * most) continue;
+            const double here = size_at(sheet, h, size);
+            if (sheet.length(h) >= collapse_below * here || !may_collapse(sheet, h, split_above * here)) continue;
             collapse_edge(sheet, h);
             ++done;
         }
@@ -120,24 +129,24 @@ double mean_length(const Sheet& sheet) {
 }
 
 /// Splits what is too long, and coarsens in stages what is too fine.
-void bring_near(Sheet& sheet, const Original& original, double size, const Watch* watch) {
+void bring_near(Sheet& sheet, const Original& original, const SurfaceSize& size, const Watch* watch) {
     constexpr int most_rounds = 30;  // each halves the longest edges
     constexpr double stage = 1.5;
-    for (int round = 0; round < most_rounds && split_long_edges(sheet, original, split_above * size) > 0; ++round)
+    for (int round = 0; round < most_rounds && split_long_edges(sheet, original, size) > 0; ++round)
         flip_for_angles(sheet, watch);
-    for (double at = stage * std::min(size, mean_length(sheet)); at < size; at *= stage) {
-        if (collapse_short_edges(sheet, collapse_below * at, split_above * size, watch) == 0) continue;
+    for (double at = stage * std::min(size.most, mean_length(sheet)); at < size.most; at *= stage) {
+        if (collapse_short_edges(sheet, at, size, watch) == 0) continue;
         sheet = compacted(sheet);
         flip_for_angles(sheet, watch);
     }
 }
 
-void relax(Sheet& sheet, const Original& original, double size, const Watch* watch) {
+void relax(Sheet& sheet, const Original& original, const SurfaceSize& size, const Watch* watch) {
     constexpr int rounds = 12, fine_rounds = 15, moves = 3;
     for (int round = 0; round < rounds; ++round) {
         heed(watch);
-        split_long_edges(sheet, original, split_above * size);
-        collapse_short_edges(sheet, collapse_below * size, split_above * size, watch);
+        split_long_edges(sheet, original, size);
+        collapse_short_edges(sheet, size.most, size, watch);
         sheet = compacted(sheet);
         flip_for_valences(sheet);
         for (int i = 0; i < moves; ++i) move_points(sheet, original);
@@ -238,7 +247,10 @@ void open_again(Surface& surface, int tip) {
 
 }  // namespace
 
-Surface resampled(const Shape& shape, double size, const Watch* watch) {
+Surface resampled(const Shape& shape, const SurfaceSize& asked, const Watch* watch) {
+    SurfaceSize size{asked.most};  // in the shape's own axes
+    if (asked.local)
+        size.local = [&](const Vec3& x) { return asked.local(shape.centre + rotated(shape.orientation, x)); };
     Sheet sheet = whole_sheet(shape);
     const Original original{whole_of(shape), Creases(sheet)};
     bring_near(sheet, original, size, watch);

@@ -9,7 +9,7 @@ namespace kropla {
 /// corners on these, so that flat faces between creases are covered exactly, and a body of such faces keeps its volume
 /// to rounding. Of a curved part the polyhedron holds what one inscribed does: on a ball of radius r a share of
 /// 3 h^2 / (8 r^2) less than the body. Where corners are nearer to each other than `size`, edges are as short as that.
-[[nodiscard]] Surface resampled(const Shape& shape, double size, const Watch* watch = nullptr);
+[[nodiscard]] Surface resampled(const Shape& shape, const SurfaceSize& size, const Watch* watch = nullptr);
 
 /// The snapshot with, for each shape that triangles bound, what its surface among `walls` bounds: no finer than the mesh,
 /// so that distances cost no more than that. Throws DomainError if such a surface cuts itself, as where a part is

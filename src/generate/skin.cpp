@@ -98,13 +98,14 @@ void equalise_valences(Skin& skin) {
         }
 }
 
-/// Each point's place after a move to the mean of its triangles' centres, weighted by area.
-Array<Vertex, Vec3> relaxed_places(const Skin& skin, const Shape& shape) {
+/// Each point's place after a move to the mean of its triangles' centres, weighted by area in squares of the size there.
+Array<Vertex, Vec3> relaxed_places(const Skin& skin, const Shape& shape, const SurfaceSize& size) {
     Array<Vertex, Vec3> sum(skin.points.size());
     Array<Vertex, double> weight(skin.points.size());
     for (const auto& [i, j, k] : skin.triangles) {
         const Vec3 &a = skin.points[i], &b = skin.points[j], &c = skin.points[k];
-        const double area = norm(cross(b - a, c - a));
+        const double finer = size.local ? size.most / size.local((a + b + c) / 3) : 1;
+        const double area = norm(cross(b - a, c - a)) * finer * finer;
         const Vec3 centre = 0.5 * (triangle_circumcentre(a, b, c) + (a + b + c) / 3);
         for (Vertex v : {i, j, k}) {
             sum[v] += area * (centre - skin.points[v]);
@@ -211,17 +212,17 @@ int flip_edges(Skin& skin, const Watch* watch) {
     return flips;
 }
 
-void relax_skin(Skin& skin, const Shape& shape, const Watch* watch) {
+void relax_skin(Skin& skin, const Shape& shape, const SurfaceSize& size, const Watch* watch) {
     constexpr int rough_rounds = 25, fine_rounds = 15;  // more do not raise the least angle, by measurement
     flip_edges(skin, watch);
     for (int round = 0; round < rough_rounds; ++round) {
         heed(watch);
         equalise_valences(skin);
-        move_points(skin, relaxed_places(skin, shape));
+        move_points(skin, relaxed_places(skin, shape, size));
     }
     for (int round = 0; round < fine_rounds; ++round) {
         flip_edges(skin, watch);
-        move_points(skin, relaxed_places(skin, shape));
+        move_points(skin, relaxed_places(skin, shape, size));
     }
     flip_edges(skin, watch);
 }

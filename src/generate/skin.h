@@ -29,7 +29,7 @@ Vertex split_longest_edge(Skin& skin, const Shape& shape, Triangle t);
 /// many.
 int flip_edges(Skin& skin, const Watch* watch = nullptr);
 
-/// Moves the points on the surface of `shape` and flips edges until the triangles are well shaped.
-void relax_skin(Skin& skin, const Shape& shape, const Watch* watch = nullptr);
+/// Moves the points on the surface of `shape` and flips edges until the triangles are well shaped, and have each their size.
+void relax_skin(Skin& skin, const Shape& shape, const SurfaceSize& size, const Watch* watch = nullptr);
 
 }  // namespace kropla

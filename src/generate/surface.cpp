@@ -26,15 +26,24 @@ double stretch(const Vec3& a, const Vec3& n) {
     return norm({a.y * a.z * n.x, a.x * a.z * n.y, a.x * a.y * n.z});
 }
 
-/// By the midpoint rule on bands of equal height; for axes of 10 : 1, right to 0.1 %.
-double surface_area(const Vec3& semi_axes) {
+/// The place of the shape's surface that the point `n` of the unit sphere becomes.
+Vec3 place_of(const Shape& shape, const Vec3& n) {
+    const Vec3& a = shape.semi_axes;
+    return shape.centre + rotated(shape.orientation, {a.x * n.x, a.y * n.y, a.z * n.z});
+}
+
+/// How many surfaces of triangles of the largest size have as many triangles: with one size, the area [m^2]. By the midpoint
+/// rule on bands of equal height; for axes of 10 : 1, right to 0.1 %.
+double area_of_largest(const Shape& shape, const SurfaceSize& size) {
     constexpr int bands = 100, steps = 100;
     double sum = 0;
     for (int i = 0; i < bands; ++i)
         for (int k = 0; k < steps; ++k) {
             const double z = (2 * i + 1.0) / bands - 1, r = std::sqrt(1 - z * z);
             const double turn = 2 * std::numbers::pi * (k + 0.5) / steps;
-            sum += stretch(semi_axes, {r * std::cos(turn), r * std::sin(turn), z});
+            const Vec3 n = {r * std::cos(turn), r * std::sin(turn), z};
+            const double finer = size.local ? size.most / size.local(place_of(shape, n)) : 1;
+            sum += stretch(shape.semi_axes, n) * finer * finer;
         }
     return 4 * std::numbers::pi * sum / (bands * steps);
 }
@@ -48,23 +57,24 @@ Vec3 random_surface_point(const Shape& shape, Random& random) {
         const double r = std::sqrt(1 - z * z);
         const Vec3 n = {r * std::cos(turn), r * std::sin(turn), z};
         if (random.uniform() * most <= stretch(a, n))
-            return shape.centre + rotated(shape.orientation, {a.x * n.x, a.y * n.y, a.z * n.z});
+            return place_of(shape, n);
     }
 }
 
-/// `count` points of the surface as far apart as darts will have it: the distance kept falls with each
-/// failure.
-std::vector<Vec3> scatter(const Shape& shape, int count, double size, Random& random, const Watch* watch) {
+/// `count` points of the surface as far apart as darts will have it, by the size where they are: the distance kept falls
+/// with each failure. Places are drawn evenly by area; where sizes are small, more darts find room.
+std::vector<Vec3> scatter(const Shape& shape, int count, const SurfaceSize& size, Random& random, const Watch* watch) {
     const double fall = 1 - 0.02 / count;  // per failure: some ten darts are thrown per point
     std::vector<Vec3> points;
     PointGrid taken;
-    for (double apart = size; static_cast<int>(points.size()) < count;) {
+    for (double apart = size.most; static_cast<int>(points.size()) < count;) {
         heed(watch);
         const Vec3 x = random_surface_point(shape, random);
-        if (taken.any_within(x, apart, size, size)) {
+        const double here = size(x);
+        if (taken.any_within(x, apart * (here / size.most), 0.5 * here, 2 * here)) {
             apart *= fall;
         } else {
-            taken.insert(x, size);
+            taken.insert(x, here);
             points.push_back(x);
         }
     }
@@ -125,15 +135,15 @@ std::vector<Added> refine_surface(Surface& surface, const std::vector<std::size_
     return all;
 }
 
-Surface triangulate_surface(const Shape& shape, double size, std::uint64_t seed, const Watch* watch) {
+Surface triangulate_surface(const Shape& shape, const SurfaceSize& size, std::uint64_t seed, const Watch* watch) {
     if (shape.surface) return resampled(shape, size, watch);
-    assert(size > 0 && size <= least_curvature_radius(shape));
+    assert(size.most > 0 && size.most <= least_curvature_radius(shape));
     // Equilateral triangles of edge h have 0.866 h^2 of area per vertex.
-    const double wanted = surface_area(shape.semi_axes) / (std::sqrt(0.75) * size * size);
+    const double wanted = area_of_largest(shape, size) / (std::sqrt(0.75) * size.most * size.most);
     Random random{seed};
     const std::vector<Vec3> points = scatter(shape, static_cast<int>(std::lround(wanted)), size, random, watch);
     Skin skin = make_skin(hull(points, shape.centre, watch), shape.centre);
-    relax_skin(skin, shape, watch);
+    relax_skin(skin, shape, size, watch);
     Surface surface = surface_of(skin);
     give_volume(surface, shape);
     return surface;

@@ -3,6 +3,7 @@
 #include "io/xml.h"
 #include "report/cut_frame.h"
 #include "report/flow_cuts.h"
+#include "report/surface_picture.h"
 
 #include <algorithm>
 #include <array>
@@ -42,6 +43,32 @@ std::string field_rows(const std::vector<CutFrame>& frames, const Watch* watch) 
     return row(heading + ", cut", frames, whole, draw) + draw_colour_bar(title, {least, most});
 }
 
+/// Does a body of the run deform? By the plain form in which a run writes its case.
+bool has_deforming_bodies(const RunFiles& run) {
+    return run.case_text.find("\nkind = \"field\"\n") != std::string::npos ||
+           run.case_text.find("\nkind = \"flow\"\n") != std::string::npos;
+}
+
+/// The bodies' surfaces in space, all frames at one scale.
+std::string surface_row(const std::vector<CutFrame>& frames, const Watch* watch) {
+    constexpr std::size_t most_triangles = 12000;  // in one picture: keeps the page below some megabytes
+    std::vector<std::vector<SurfaceTriangle>> surfaces;
+    std::vector<SurfaceTriangle> all;
+    for (const CutFrame& f : frames) {
+        const auto& here = surfaces.emplace_back(surface_triangles(f.frame.mesh));
+        all.insert(all.end(), here.begin(), here.end());
+        if (count_seen(here) > most_triangles)
+            return "<p class=\"soft\">Surfaces of bodies are not drawn in space: they have too many triangles.</p>";
+    }
+    if (all.empty()) return {};
+    const CutWindow window = extent_in_space(all);
+    const auto draw = [&](const CutFrame& f, const CutWindow& seen) {
+        heed(watch);
+        return draw_surfaces(surfaces[static_cast<std::size_t>(&f - frames.data())], seen);
+    };
+    return row("Surfaces of the bodies, in space", frames, [&](const CutFrame&) { return window; }, draw);
+}
+
 }  // namespace
 
 CutPictures draw_cuts(const RunFiles& run, const Watch* watch) {
@@ -56,6 +83,7 @@ CutPictures draw_cuts(const RunFiles& run, const Watch* watch) {
                        " axis through the first body's centre cuts.</p>";
     html += row("Whole domain", frames, whole, cells);
     if (frames.front().spot.radius > 0) html += row("Around the first body", frames, magnified, cells);
+    if (has_deforming_bodies(run)) html = surface_row(frames, watch) + html;
     return {html, field_rows(frames, watch) + draw_flow_cuts(run, frames, watch)};
 }
 

@@ -60,6 +60,7 @@ path.limit { stroke: var(--limit); stroke-width: 1.6; stroke-dasharray: 6 4; }
 .hints rect { fill: transparent; } .hints rect:hover { fill: var(--soft); fill-opacity: .16; }
 .picture { border-radius: 4px; margin-bottom: 8px; } .cells path { stroke: var(--edge); stroke-width: .35;
   stroke-linejoin: round; }
+.cells .axes { fill: none; stroke: var(--soft); stroke-width: 1.2; }
 .mark { fill: none; stroke: var(--limit); stroke-width: 2.5; }
 .field path { stroke-width: .5; stroke-linejoin: round; }
 .field .outline { fill: none; stroke: #141c26; stroke-width: 2.6; }

@@ -73,6 +73,37 @@ TEST(SizeField, RisesNoSteeperThanTetrahedraCan) {
     EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {0, 0, 11}), 0.2 + 0.4);
 }
 
+TEST(SizeField, IsThatOfTheNearestPlaceOfASurfaceWhereSizesAreLocal) {
+    Domain domain = one_ball();
+    domain.size.least = 0.05;
+    domain.size.local = [](const Vec3& x) { return 0.1 + 0.1 * (x.z - 13); };
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {0, 0, 16}), 0.2 + 0.2);
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {3, 0, 13}), 0.1 + 0.2);
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {0, 0, 10}), 0.05 + 0.2);  // no less than `least`
+    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, t}, {}}; };
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 2), {0, 0, 17}), 0.2 + 0.1);  // no more than `surface`
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0.5), {0, 0, 11.5}), 0.05 + 0.1);  // at 12.5
+    domain.bodies[0].size = 0.3;  // its own
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {0, 0, 16}), 0.3 + 0.2);
+    domain.bodies[0].local_size = [](const Vec3& x) { return 0.25 - 0.1 * x.x; };
+    EXPECT_DOUBLE_EQ(target_size(snapshot(domain, 0), {2, 0, 13}), 0.15 + 0.1);
+}
+
+TEST(SizeField, OfManyBodiesIsTheSameByTheirTreeWhereSizesAreLocal) {
+    Domain domain{{{0, 0, 0}, {10, 10, 10}}, {}, {.surface = 0.3, .growth = 0.2, .far = 0.8, .least = 0.02}};
+    for (int i = 0; i < 27; ++i)
+        domain.bodies.push_back(body("ball " + std::to_string(i), ball({1.5 + 3 * (i % 3), 1.5 + 3 * (i / 3 % 3), 1.5 + i / 9 * 3}, 0.7)));
+    domain.size.local = [](const Vec3& x) { return 0.3 * std::abs(std::sin(x.x + 2 * x.y - x.z)) + 1e-3; };
+    const Snapshot at = snapshot(domain, 0);
+    ASSERT_TRUE(at.tree);
+    Snapshot without = at;
+    without.tree = {};
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 x{i % 10 + 0.5, i / 10 % 10 + 0.3, i / 100 + 0.1};
+        ASSERT_EQ(target_size(at, x), target_size(without, x)) << i;
+    }
+}
+
 TEST(Snapshot, TakesBodiesAlongTheirMotion) {
     Domain domain = one_ball();
     domain.bodies[0].motion = [](double t) { return Pose{{0, 0, -1000 * t}, {}}; };

@@ -117,7 +117,7 @@ TEST(Sheet, IsTheSameSurfaceAfterAThousandOperations) {
 TEST(Resampled, FlatFacesKeepVolumeEdgesAndCorners) {
     for (double size : {0.5, 0.2}) {
         const Shape shape = shape_of(l_block(), {0.3, -1, -0.5}, rotation_about({1, 2, 3}, 0.7));
-        const Surface s = resampled(shape, size);
+        const Surface s = resampled(shape, {size});
         EXPECT_NEAR(enclosed_volume(s, shape.centre), 3, 1e-13);
         for (const Vec3& x : s.points) EXPECT_NEAR(signed_distance(shape, x), 0, 1e-14);
         double length = 0;
@@ -129,10 +129,29 @@ TEST(Resampled, FlatFacesKeepVolumeEdgesAndCorners) {
     }
 }
 
+TEST(Resampled, HasTheSizeOfEachPlace) {
+    const Vec3 centre{0.3, -1, -0.5};
+    const auto local = [&](const Vec3& x) { return 0.06 + 0.05 * norm(x - centre); };
+    const Shape shape = shape_of(l_block(), centre, rotation_about({1, 2, 3}, 0.7));
+    const Surface s = resampled(shape, {0.2, local});
+    EXPECT_NEAR(enclosed_volume(s, shape.centre), 3, 1e-13);
+    EXPECT_GT(least_angle(s), 25);
+    double least = 1e300, most = 0;
+    for (const auto& t : s.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 &a = s.points[static_cast<std::size_t>(t[i])], &b = s.points[static_cast<std::size_t>(t[(i + 1) % 3])];
+            const double part = distance(a, b) / local(0.5 * (a + b));
+            least = std::min(least, part);
+            most = std::max(most, part);
+        }
+    EXPECT_GT(least, 0.45);
+    EXPECT_LT(most, 1.6);
+}
+
 TEST(Resampled, SmoothSurfacesFineOrCoarseBecomeWellShapedTriangles) {
     const Shape ring = shape_of(torus(1, 0.4, 60, 30)), ball = shape_of(sphere_of_triangles(5)), few = shape_of(sphere_of_triangles(2));
     for (const auto& [shape, size, holes] : {std::tuple{ring, 0.15, 1}, {ball, 0.3, 0}, {few, 0.1, 0}}) {
-        const Surface s = resampled(shape, size);
+        const Surface s = resampled(shape, {size});
         EXPECT_EQ(euler(s), holes == 1 ? 0 : 2);
         EXPECT_TRUE(s.creases.empty());
         for (const Vec3& x : s.points) EXPECT_NEAR(signed_distance(shape, x), 0, 1e-14);
@@ -150,5 +169,5 @@ TEST(GenerateMesh, TakesAnyClosedSurface) {
     const Triangles both = together(hollow, box_of_triangles({1.9, 0, 0}, {2.5, 0.6, 0.6}));
     expect_mesh(domain_with(shape_of(both), 0.5), 27 - 2.744 + 0.216);
     const Shape ring = shape_of(torus(1, 0.4, 40, 20), {0.2, 0.1, -0.3}, turned);
-    expect_mesh(domain_with(ring, 0.25), enclosed_volume(resampled(ring, 0.25), ring.centre));
+    expect_mesh(domain_with(ring, 0.25), enclosed_volume(resampled(ring, {0.25}), ring.centre));
 }

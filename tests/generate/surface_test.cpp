@@ -87,6 +87,30 @@ TEST(Surface, TrianglesAreWellShapedAndOfTheSizeAsked) {
         }
 }
 
+TEST(Surface, HasTheSizeOfEachPlace) {
+    const auto local = [](const Vec3& x) { return 0.05 + 0.1 * (x.z + 1); };  // from 0.05 to 0.25
+    for (const Shape& shape : {ball({0, 0, 0}, 1), turned_ellipsoid({0, 0, 0}, {0.8, 1, 0.9})})
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            SCOPED_TRACE("seed " + std::to_string(seed));
+            Surface surface = triangulate_surface(shape, {0.25, local}, seed);
+            EXPECT_TRUE(is_closed_sphere(surface));
+            EXPECT_NEAR(signed_volume(surface, shape.centre) / volume_of(shape), 1, 1e-14);
+            EXPECT_GT(shapeliness(surface).least_angle, 25);
+            double least = 1e300, most = 0, mean = 0;
+            for (const auto& t : surface.triangles)
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const Vec3 &a = surface.points[static_cast<std::size_t>(t[i])], &b = surface.points[static_cast<std::size_t>(t[(i + 1) % 3])];
+                    const double part = distance(a, b) / local(0.5 * (a + b));
+                    least = std::min(least, part);
+                    most = std::max(most, part);
+                    mean += part / static_cast<double>(3 * surface.triangles.size());
+                }
+            EXPECT_GT(least, 0.5);
+            EXPECT_LT(most, 1.6);
+            EXPECT_NEAR(mean, 1, 0.03);
+        }
+}
+
 TEST(Surface, HoldsTheVolumeOfItsShape) {
     // Round, long, flat, with three axes, nearly round; from a size equal to the least radius of curvature on.
     const std::array axes_of = {Vec3{1, 1, 1}, Vec3{1, 1, 3}, Vec3{1, 3, 3}, Vec3{1, 1.5, 2}, Vec3{1, 1 + 1e-9, 1}};
