@@ -2,6 +2,7 @@
 
 #include "adapt/mesh_step.h"
 #include "adapt/fits_domain.h"
+#include <kropla/domain/solids.h>
 
 #include <stdexcept>
 #include <utility>
@@ -18,6 +19,7 @@ const MeshStep& there(const std::shared_ptr<MeshStep>& step) {
 
 MovingMesh::MovingMesh(Domain domain, Mesh mesh, double t, const AdaptOptions& options,
                        std::span<const BodyPlace> places) {
+    for (Body& body : domain.bodies) body = cut_body(std::move(body));  // what reaches through faces of the box
     PlannedMotions planned(domain, t);
     for (const BodyPlace& place : places) planned.correct(domain, place, t);
     for (const BodySurface& surface : deforming_surfaces(domain, mesh))  // it is where the mesh has it

@@ -56,8 +56,8 @@ Shape read_surface(const CaseTable& table, const Box& box, WrittenBody& written)
     const Vec3 centre = table.place("centre");
     const Rotation rotation = read_rotation(table, written);
     const bool cut = table.has("cut") && table.truth("cut");
-    written.surface = {{"centre", toml_list(centre)}, {"file", toml_text(path.string())}, {"scale", toml_number(scale)},
-                       {"cut", cut ? "true" : "false"}};
+    written.surface = {{"centre", toml_list(centre)}, {"file", toml_text(path.string())}, {"scale", toml_number(scale)}};
+    if (cut) written.surface.emplace_back("cut", "true");
     FileTriangles found;
     try {
         found = read_triangles(path);

@@ -103,6 +103,7 @@ double outward_shift(const Shape& shape, double size) {
     // its volume, and is blown up by a third of that; on an ellipsoid by less, by its least radius of curvature.
     // 0.125 in the limit of fine triangles; more on coarse ones, by measurement.
     constexpr double share = 0.15;
+    if (shape.surface) return 0;
     return share * size * (size / least_curvature_radius(shape));
 }
 

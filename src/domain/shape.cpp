@@ -50,7 +50,7 @@ Shape shape_within(std::vector<Vec3> points, const std::vector<std::array<int, 3
 unsigned reached_faces(const Shape& shape) { return shape.surface ? shape.surface->reached() : 0; }
 
 Shape placed(const Shape& start, const Pose& pose) {
-    return {start.centre + pose.displacement, start.semi_axes, pose.rotation * start.orientation, start.surface, start.cut};
+    return {start.centre + pose.displacement, start.semi_axes, pose.rotation * start.orientation, start.surface, start.cut, start.resolved};
 }
 
 Vec3 placed(const Shape& start, const Pose& pose, const Vec3& at_start) {
@@ -147,7 +147,7 @@ double outer_radius(const Shape& shape) {
 }
 
 double least_curvature_radius(const Shape& shape) {
-    if (shape.surface) return std::numeric_limits<double>::infinity();
+    if (shape.surface) return shape.resolved;
     return least(shape.semi_axes) * (least(shape.semi_axes) / greatest(shape.semi_axes));
 }
 

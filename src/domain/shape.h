@@ -3,6 +3,7 @@
 #include <kropla/base/vec3.h>
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,7 @@ struct Shape {
     Rotation orientation;
     std::shared_ptr<const TriangulatedSurface> surface = {};  // about the centre, by its own axes; none: an ellipsoid
     std::shared_ptr<const CutSurface> cut = {};  // what that is a part of, where faces of the box cut the body (solids.h)
+    double resolved = std::numeric_limits<double>::infinity();  // [m] radius that triangles on such a surface have to resolve
 };
 
 [[nodiscard]] inline bool is_sphere(const Shape& s) {
@@ -67,8 +69,8 @@ struct Shape {
 [[nodiscard]] Vec3 closest_point(const Shape& shape, const Vec3& x);
 /// The radius of the smallest ball about the centre that holds the shape [m].
 [[nodiscard]] double outer_radius(const Shape& shape);
-/// The least radius of curvature that triangles on the surface have to resolve [m]: infinite for a surface of
-/// triangles, edges or not, since these are the mesh's.
+/// The least radius of curvature that triangles on the surface have to resolve [m]: of a surface of triangles infinite,
+/// edges or not, unless its maker knows of one (a cylinder).
 [[nodiscard]] double least_curvature_radius(const Shape& shape);
 /// The distance between two surfaces [m]; 0 if the shapes overlap. Of spheres exact; with an ellipsoid to 1e-9 and not
 /// above; of triangles exact to rounding, in a time that grows with the logarithm of their number where few are near.

@@ -19,8 +19,10 @@ namespace {
 constexpr double beyond = 0.1;
 /// [of the box's width] what ends nearer to a face ends in it.
 constexpr double in_face = 1e-9;
-/// of a cylinder: the polygon's corners stand out of the circle, and its middles within, by less than 1e-4 radii.
-constexpr int sides = 180;
+/// of a cylinder: the polygon's corners stand out of the circle, and its middles within, by less than 5e-4 radii.
+constexpr int sides = 90;
+/// [of a side] from ring to ring of the mantle: of long thin triangles good ones are not easily made (generate/resample.h).
+constexpr double ring_spacing = 4;
 
 /// A triangle of the block by its corners 0 ... 7, of which bit `axis` tells the side along that axis.
 constexpr std::array<std::array<int, 3>, 12> of_block = {{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
@@ -69,16 +71,22 @@ Shape cylinder(const Box& box, const Vec3& from, const Vec3& to, double radius) 
     const Vec3 u = normalised(cross(along, off)), v = cross(along, u);
     const double turn = 2 * std::numbers::pi / sides;
     const double outer = radius * std::sqrt(turn / std::sin(turn));  // the polygon has the circle's area
+    const int rings = 1 + static_cast<int>(std::ceil(distance(start, end) / (ring_spacing * turn * radius)));
     std::vector<Vec3> points = {start, end};
     std::vector<std::array<int, 3>> triangles;
-    for (int i = 0; i < sides; ++i) {
-        const Vec3 out = outer * (std::cos(i * turn) * u + std::sin(i * turn) * v);
-        points.push_back(start + out);
-        points.push_back(end + out);
-        const int a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % sides);
-        triangles.insert(triangles.end(), {{0, b, a}, {1, a + 1, b + 1}, {a, b, a + 1}, {b, b + 1, a + 1}});
-    }
-    return cut_by(box, shape_within(std::move(points), triangles));
+    const auto at = [](int ring, int i) { return 2 + ring * sides + i % sides; };
+    for (int ring = 0; ring < rings; ++ring)
+        for (int i = 0; i < sides; ++i) {
+            const Vec3 out = outer * (std::cos(i * turn) * u + std::sin(i * turn) * v);
+            points.push_back(start + static_cast<double>(ring) / (rings - 1) * (end - start) + out);
+            if (ring == 0) triangles.push_back({0, at(0, i + 1), at(0, i)});
+            else triangles.insert(triangles.end(), {{at(ring - 1, i), at(ring - 1, i + 1), at(ring, i)},
+                                                    {at(ring - 1, i + 1), at(ring, i + 1), at(ring, i)}});
+            if (ring == rings - 1) triangles.push_back({1, at(ring, i), at(ring, i + 1)});
+        }
+    Shape shape = cut_by(box, shape_within(std::move(points), triangles));
+    shape.resolved = radius;
+    return shape;
 }
 
 }  // namespace kropla

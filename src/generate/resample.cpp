@@ -9,6 +9,7 @@
 
 #include "generate/resample.h"
 
+#include <kropla/base/error.h>
 #include "domain/cut.h"
 #include <kropla/domain/words.h>
 #include "generate/creases.h"
@@ -128,12 +129,26 @@ double mean_length(const Sheet& sheet) {
     return sum / static_cast<double>(sheet.origin.size());
 }
 
+/// Where the surface bends within a triangle of the size, edges that are split may not become shorter, and there is no end.
+void check_budget(const Sheet& sheet, std::size_t halves_at_start, const Original& original, double size) {
+    constexpr double generous = 100;  // triangles per square of the size, and per triangle at the start
+    const auto most = generous * (original.surface.area() / (size * size) + static_cast<double>(halves_at_start));
+    if (static_cast<double>(sheet.origin.size()) > most)
+        throw DomainError("a surface of triangles bends too much for triangles of " + metres(size) +
+                          ": a smaller size would do");
+}
+
 /// Splits what is too long, and coarsens in stages what is too fine.
 void bring_near(Sheet& sheet, const Original& original, const SurfaceSize& size, const Watch* watch) {
     constexpr int most_rounds = 30;  // each halves the longest edges
     constexpr double stage = 1.5;
-    for (int round = 0; round < most_rounds && split_long_edges(sheet, original, size) > 0; ++round)
+    const std::size_t at_start = sheet.origin.size();
+    double least = size.most;
+    for (Half h : sheet.origin.indices()) least = std::min(least, size_at(sheet, h, size));
+    for (int round = 0; round < most_rounds && split_long_edges(sheet, original, size) > 0; ++round) {
+        check_budget(sheet, at_start, original, least);
         flip_for_angles(sheet, watch);
+    }
     for (double at = stage * std::min(size.most, mean_length(sheet)); at < size.most; at *= stage) {
         if (collapse_short_edges(sheet, at, size, watch) == 0) continue;
         sheet = compacted(sheet);
