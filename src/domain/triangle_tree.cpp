@@ -31,26 +31,41 @@ TriangleTree::TriangleTree(std::vector<Vec3> points, std::vector<std::array<int,
 
 Corners TriangleTree::corners(std::size_t triangle) const { return corners_of(points_, triangles_[triangle]); }
 
+namespace {
+
+/// How far at most what is in the box reaches along `direction`, from the origin, in its lengths.
+double reach_of(const Extent& box, const Vec3& direction) {
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis) reach += std::max(direction[axis] * box.min[axis], direction[axis] * box.max[axis]);
+    return reach;
+}
+
+}  // namespace
+
+// Nothing behind the plane through the nearest place so far, across the way to it, is nearer: of a body that bulges that
+// is nearly all, whose boxes alone would not tell.
 NearestPlace TriangleTree::nearest(const Vec3& x) const {
     NearestPlace found{x};
-    boxes_.least([&](const Extent& box) { return box.squared_distance(x); },
+    Vec3 back;                          // from the nearest place to x
+    double behind = -Extent::infinite;  // along it, that place
+    boxes_.least([&](const Extent& box) { return reach_of(box, back) <= behind ? Extent::infinite : box.squared_distance(x); },
                  [&](std::size_t triangle) {
-                     const OnTriangle there = closest_on_triangle(corners(triangle), x);
+                     const Corners c = corners(triangle);
+                     if (std::max({dot(back, c[0]), dot(back, c[1]), dot(back, c[2])}) <= behind) return Extent::infinite;
+                     const OnTriangle there = closest_on_triangle(c, x);
                      const double away = squared_norm(x - there.point);
-                     if (away < found.squared_distance) found = {there.point, away, triangle, there.part};
+                     if (away < found.squared_distance) {
+                         found = {there.point, away, triangle, there.part};
+                         back = x - there.point;
+                         behind = dot(back, there.point);
+                     }
                      return away;
                  });
     return found;
 }
 
 double TriangleTree::reach_along(const Vec3& direction) const {
-    const auto nearest_corner = [&](const Extent& box) {
-        double reach = 0;
-        for (int axis = 0; axis < 3; ++axis)
-            reach += std::max(direction[axis] * box.min[axis], direction[axis] * box.max[axis]);
-        return -reach;
-    };
-    return -boxes_.least(nearest_corner, [&](std::size_t triangle) {
+    return -boxes_.least([&](const Extent& box) { return -reach_of(box, direction); }, [&](std::size_t triangle) {
         const auto [a, b, c] = corners(triangle);
         return -std::max({dot(direction, a), dot(direction, b), dot(direction, c)});
     });

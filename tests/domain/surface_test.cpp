@@ -2,6 +2,7 @@
 #include <kropla/base/error.h>
 #include "domain/shapes.h"
 #include "domain/surfaces.h"
+#include "domain/triangle_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -55,6 +56,29 @@ TEST(SurfaceShape, ABoxHasItsDistancesAlsoAtEdgesAndCorners) {
             EXPECT_NEAR(signed_distance(box, x), distance_from_box(h, p), 1e-14 * 10);
             EXPECT_NEAR(distance(closest_point(box, x), x), std::abs(distance_from_box(h, p)), 1e-13);
         }
+    }
+}
+
+TEST(TriangleTree, FindsTheNearestOfAllTriangles) {
+    constexpr std::uint64_t seed = 5;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random{seed};
+    Triangles soup = sphere_of_triangles(3);  // and triangles anywhere
+    for (int i = 0; i < 300; ++i) {
+        const auto first = static_cast<int>(soup.points.size());
+        const Vec3 at = random_vector(random, 2);
+        for (int corner = 0; corner < 3; ++corner) soup.points.push_back(at + random_vector(random, 0.3));
+        soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    const TriangleTree tree(soup.points, soup.triangles);
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 x = random_vector(random, i % 2 == 0 ? 1.2 : 20);
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t t = 0; t < soup.triangles.size(); ++t)
+            least = std::min(least, distance(closest_on_triangle(tree.corners(t), x).point, x));
+        const NearestPlace found = tree.nearest(x);
+        ASSERT_NEAR(std::sqrt(found.squared_distance), least, 1e-14 * 20) << i;
+        ASSERT_NEAR(distance(found.point, x), least, 1e-14 * 20) << i;
     }
 }
 
