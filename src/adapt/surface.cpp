@@ -254,8 +254,8 @@ std::optional<Vec3> place_of_one(const Mesh& mesh, const SurfaceStar& a, const S
     return from + shift;
 }
 
-/// A cell between both ends goes; if it had a facet on the boundary at one end, the cell across from the other end comes to the boundary
-/// with the facet that was between the two.
+/// A cell between both ends goes; if it had a facet on the boundary at one end, the cell across from the other end comes to
+/// the boundary with the facet that was between the two.
 struct ComesToBoundary {
     Tet cell;
     int corner;

@@ -80,8 +80,8 @@ TEST(RunSolids, AWireIsFedTowardsAPool) {
     const auto columns = lasting_columns(folder.path / "d");
     for (const std::string& v : columns.at("volume_pool")) EXPECT_NEAR(std::stod(v), 2, 1e-12);
     const double area = std::numbers::pi * 0.0625;
-    for (std::size_t step = 0; step < 3; ++step)
-        EXPECT_NEAR(std::stod(columns.at("volume_wire")[step]) / (area * (0.55 + 0.05 * static_cast<double>(step))), 0.9, 0.05);
+    for (std::size_t step = 0; step < 3; ++step)  // of a polyhedron inscribed, as long as it should be
+        EXPECT_NEAR(std::stod(columns.at("volume_wire")[step]) / (area * (0.55 + 0.05 * static_cast<double>(step))), 0.95906, 2e-4);
     for (const std::string& r : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(r), 6);
     EXPECT_EQ(kropla_program(folder, "check d").code, 0);
 }

@@ -51,6 +51,23 @@ TEST_F(CaseSurface, IsReadScaledTurnedAndPut) {
     EXPECT_EQ(again.domain.bodies[0].shape.centre, body.shape.centre);
 }
 
+TEST_F(CaseSurface, IsCutByAFace) {
+    put("cube.obj", cube + "f 4 1 5 8\n");
+    const std::string body = "file = \"cube.obj\"\nscale = 0.4\ncentre = [0.8, 0.3, 0.2]\n";
+    const Case it = read(body + "cut = true");
+    EXPECT_EQ(reached_faces(it.domain.bodies[0].shape), 0b10u);  // x max
+    EXPECT_NEAR(volume(it.domain.bodies[0].shape), 0.2 * 0.4 * 0.4, 1e-15);
+    EXPECT_LT(distance(it.domain.bodies[0].shape.centre, {0.9, 0.5, 0.4}), 1e-15);
+    const std::string written = to_toml(it);
+    EXPECT_NE(written.find("cut = true"), std::string::npos);
+    EXPECT_EQ(to_toml(parse_case(written, "elsewhere/case.toml")), written);
+    EXPECT_EQ(reached_faces(read(body).domain.bodies[0].shape), 0u);
+    const std::string in_face = "file = \"cube.obj\"\nscale = 0.4\ncentre = [0.8, 0.3, 0]\ncut = true";
+    const std::string told = refusal(in_face);
+    EXPECT_NE(told.find("case.toml: body[0].cut (line 10): a part of its surface lies in the wall z min, at (0.8, 0.7, 0) m; "
+                        "it is to end before, or to reach through"), std::string::npos) << told;
+}
+
 TEST_F(CaseSurface, FaultsOfTheFileAreToldWithPlaceAndCount) {
     put("open.obj", cube);
     const std::string told = refusal("file = \"open.obj\"\nscale = 0.1\ncentre = [0.5, 0.5, 0.5]");
