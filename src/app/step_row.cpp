@@ -87,7 +87,11 @@ void add_flow(const StepReport& report, StepRow& row) {
     const FlowReport& flow = report.flow;
     for (std::size_t face = 0; face < face_keys.size(); ++face)
         row.push_back({fmt::format("volume_out_{} [m^3/s]", face_keys[face]), flow.face_flux[face]});
-    row.insert(row.end(), {{"mass_error_surroundings [kg]", flow.mass_error},
+    row.insert(row.end(), {{"kinetic_energy [J]", flow.energy.kinetic},
+                           {"surface_energy [J]", flow.energy.surface},
+                           {"gravity_energy [J]", flow.energy.gravity},
+                           {"dissipated [J]", flow.dissipated},
+                           {"mass_error_surroundings [kg]", flow.mass_error},
                            {"courant", flow.largest_courant},
                            {"flow_passes", static_cast<double>(flow.passes)},
                            {"flow_iterations", static_cast<double>(flow.iterations)},

@@ -130,12 +130,21 @@ struct SurfaceCourse {
     double area = 0;                    // [m^2] at its end
 };
 
+/// Of what flows, at the end of a step [J].
+struct FlowEnergy {
+    double kinetic = 0;
+    double surface = 0;  // tension times area
+    double gravity = 0;  // against the origin of coordinates
+};
+
 struct FlowReport {
     int iterations = 0;  // of the linear solver
     int passes = 0;      // of Newton's method, of all stages
     double error = 0;    // [-] what is left of the first residual
     std::vector<BodyForce> bodies = {};    // of solid ones
     std::vector<SurfaceCourse> surfaces = {};  // of liquid ones
+    FlowEnergy energy = {};
+    double dissipated = 0;  // [J] in the step, by viscosity
     std::array<double, 6> face_flux = {};  // [m^3/s] out through each face
     // [N] on each face; nothing where it is open. Where faces meet, what acts on vertices is of the face
     // across that direction, else of both: of shear a share of the cells' size goes to faces beside.

@@ -6,6 +6,7 @@
 #include "simulate/assembly.h"
 #include "simulate/flow_cell.h"
 #include "simulate/flow_conditions.h"
+#include "simulate/flow_energy.h"
 #include "simulate/flow_mass.h"
 #include "simulate/flow_solver.h"
 #include "simulate/stop.h"
@@ -129,6 +130,9 @@ public:
             const LiquidSurface& liquid = boundary_.liquids[s];
             report.surfaces.push_back({liquid.body, liquid.facets, liquid.vertices, gone_[s], tensions_[s].area});
         }
+        report.energy = flow_energy(current_, cells_, material_, guess_.velocity, options_.gravity);
+        for (const SurfaceTension& acts : tensions_) report.energy.surface += acts.energy;
+        report.dissipated = dissipated_;
         report_mass(report);
         report.face_force = face_forces(reaction);
         report.largest_courant = largest_courant();
@@ -280,6 +284,7 @@ private:
         }
         if (left > 0) error_ = left / largest_left_;
         if (masses_) note_passed(at.weight, position);
+        dissipated_ += at.weight * dt_ * dissipation(current_, cells_, position, material_, guess_.velocity);
         for (std::size_t s = 0; s < boundary_.liquids.size(); ++s)
             for (std::size_t i = 0; i < gone_[s].size(); ++i)
                 gone_[s][i] += at.weight * dt_ * guess_.velocity[boundary_.liquids[s].vertices[i]];
@@ -592,6 +597,7 @@ private:
     Array<Vertex, Vec3> mesh_velocity_;
     FlowSolver solver_;
     bool triangular_ = false;  // the preconditioner
+    double dissipated_ = 0;  // [J] in the stages so far
     int passes_ = 0;
     double largest_left_ = 0;  // the first residual of a stage, the larger of both
     double error_ = 0;

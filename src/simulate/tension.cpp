@@ -88,7 +88,7 @@ std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets,
 
 SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex, Vec3>& position) {
     const std::size_t count = surface.vertices.size();
-    SurfaceTension acts{std::vector<Vec3>(count), surface_normals(surface.facets, surface.vertices, position), {}, 0};
+    SurfaceTension acts{std::vector<Vec3>(count), surface_normals(surface.facets, surface.vertices, position), {}, 0, 0};
     std::vector<Vec3> pull(count), along(count);  // of the whole tension; of its gradient
     std::vector<double> share(count, 0);          // of the area
     for (const auto& corners : surface.facets) {
@@ -101,6 +101,7 @@ SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex,
             gradient += surface.tension[facet.at[i]] * facet.area_gradient[i];
         }
         acts.area += area;
+        acts.energy += tension * area;
         for (std::size_t i = 0; i < 3; ++i) {
             pull[facet.at[i]] -= tension * facet.area_gradient[i];
             along[facet.at[i]] += gradient / 3;

@@ -42,6 +42,7 @@ struct SurfaceTension {
     std::vector<Vec3> normal;  // unit, out of the body
     std::vector<Bond> bonds;   // by rows, each pair once; both ways
     double area = 0;           // [m^2]
+    double energy = 0;         // [J] tension times area
 };
 [[nodiscard]] SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex, Vec3>& position);
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "simulate/flow_cell.h"
+
+namespace kropla {
+
+/// The energy of what flows, with its vertices at `position`: of motion, and in the field of gravity against the origin.
+[[nodiscard]] FlowEnergy flow_energy(const Mesh& mesh, const Cells& cells, const Array<Region, FlowMaterial>& material,
+                                     const Array<Vertex, Vec3>& velocity, const Vec3& gravity);
+
+/// What viscosity turns into heat [W], the integral of mu/2 |grad u + grad u^T|^2.
+[[nodiscard]] double dissipation(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& position,
+                                 const Array<Region, FlowMaterial>& material, const Array<Vertex, Vec3>& velocity);
+
+}  // namespace kropla
