@@ -188,13 +188,14 @@ toml::table parse(std::string_view text, const std::string& name) {
 /// What does not know bodies that deform.
 void refuse_with_deforming(const CaseTable& file, const Case& it) {
     for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
-        if (!it.domain.bodies[body].deformation || it.liquid[body] != 0) continue;
+        const Body& of = it.domain.bodies[body];
+        if (!of.deformation || it.liquid[body] != 0) continue;
+        const std::string why =
+            fmt::format("is solved for around bodies that {}", of.shape.cut
+                            ? fmt::format("are wholly in the box; {} reaches through faces of it", named(of))
+                            : fmt::format("move rigidly, or with the flow; {} deforms (motion.kind = \"field\")", named(of)));
         for (const char* key : {"heat", "species", "flow"})
-            if (file.has(key))
-                file.refuse(key, fmt::format("is solved for around bodies that move rigidly, or with the flow; {} {}",
-                                             named(it.domain.bodies[body]),
-                                             it.domain.bodies[body].shape.cut ? "reaches through faces of the box"
-                                                                              : "deforms (motion.kind = \"field\")"));
+            if (file.has(key)) file.refuse(key, why);
     }
     const auto deforms = std::ranges::find_if(it.domain.bodies, [](const Body& body) { return bool(body.deformation); });
     if (deforms == it.domain.bodies.end()) return;

@@ -68,8 +68,8 @@ TEST(CaseSolids, RefusalsNameKeyAndLine) {
     EXPECT_EQ(refused("[body.motion]", "[body.layer]\ncount = 2\n[body.motion]"),
               "case.toml: body[1].layer (line 15): stands on bodies that are wholly in the box; this one reaches through the wall z max");
     EXPECT_EQ(refused("steps = 3", "steps = 3\n[flow]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n"),
-              "case.toml: flow (line 24): is solved for around bodies that move rigidly, wholly in the box; body \"pool\" reaches "
-              "through faces of the box");
+              "case.toml: flow (line 24): is solved for around bodies that are wholly in the box; body \"pool\" reaches "
+              "through faces of it");
 }
 
 TEST(RunSolids, AWireIsFedTowardsAPool) {
