@@ -59,12 +59,43 @@ int axis_across_path(const std::vector<CutFrame>& frames) {
     return best;
 }
 
+namespace {
+
+/// Where the pressure is another within a body, at its surface, the body's cells get vertices of their own that have it.
+Frame parted_at_liquids(Frame frame) {
+    const auto within = std::ranges::find(frame.fields, "pressure_within", &NodalField::name);
+    const auto outside = std::ranges::find(frame.fields, "pressure", &NodalField::name);
+    if (within == frame.fields.end() || outside == frame.fields.end()) return frame;
+    const Array<Vertex, double> inner = within->values, outer = outside->values;
+    Array<Vertex, Vertex> copy(inner.size());
+    Mesh& mesh = frame.mesh;
+    for (Tet t : mesh.tets.indices()) {
+        if (!alive(mesh, t) || mesh.region[t].value == 0) continue;
+        for (Vertex& v : mesh.tets[t]) {
+            if (inner[v] == outer[v]) continue;
+            if (!copy[v].exists()) {
+                copy[v] = Vertex(mesh.position.size());
+                mesh.position.push_back(Vec3(mesh.position[v]));
+                mesh.tet_at.push_back(t);
+                mesh.layer_at.push_back(Layer{});
+                for (NodalField& field : frame.fields) field.values.push_back(double(field.values[v]));
+                for (NodalVectorField& field : frame.vectors) field.values.push_back(Vec3(field.values[v]));
+                outside->values[copy[v]] = inner[v];
+            }
+            v = copy[v];
+        }
+    }
+    return frame;
+}
+
+}  // namespace
+
 std::vector<CutFrame> read_cuts(const RunFiles& run, const Watch* watch) {
     std::vector<CutFrame> frames;
     for (const SeriesEntry& entry : start_middle_end(run.frames)) {
         heed(watch);
         CutFrame f{.time = entry.time,
-                   .frame = read_vtu(run.dir / entry.file, watch),
+                   .frame = parted_at_liquids(read_vtu(run.dir / entry.file, watch)),
                    .spot = {},
                    .plane = {},
                    .cut = {}};
