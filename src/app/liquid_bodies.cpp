@@ -42,7 +42,7 @@ private:
         for (const auto& facet : surface.facets) {
             auto& corners = triangles.emplace_back();
             for (std::size_t i = 0; i < 3; ++i)
-                corners[i] = static_cast<int>(std::ranges::lower_bound(surface.vertices, facet[i]) - surface.vertices.begin());
+                corners[i] = static_cast<int>(place_of(surface.vertices, facet[i]));
         }
         return triangles;
     }
@@ -74,8 +74,7 @@ Vec3 way_of_centre(const SurfaceCourse& surface, const Array<Vertex, Vec3>& plac
         std::array<Vec3, 3> x, d;
         for (std::size_t i = 0; i < 3; ++i) {
             x[i] = place[facet[i]] - origin;
-            d[i] = surface.displacement[static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, facet[i]) -
-                                                                 surface.vertices.begin())];
+            d[i] = surface.displacement[place_of(surface.vertices, facet[i])];
         }
         const Vec3 area = 0.5 * cross(x[1] - x[0], x[2] - x[0]), all = x[0] + x[1] + x[2];
         for (std::size_t i = 0; i < 3; ++i) {
@@ -110,9 +109,7 @@ BodyCourse course_of(const SurfaceCourse& surface, const Array<Vertex, Vec3>& be
 SurfaceCourse expected_course(const Mesh& begin, Region liquid, const Array<Vertex, Vec3>& velocity,
                               const Array<Vertex, Vec3>& rate, double dt) {
     SurfaceCourse surface{liquid, region_surface(begin, liquid).interface, {}, {}};
-    for (const auto& facet : surface.facets) surface.vertices.insert(surface.vertices.end(), facet.begin(), facet.end());
-    std::ranges::sort(surface.vertices);
-    surface.vertices.erase(std::unique(surface.vertices.begin(), surface.vertices.end()), surface.vertices.end());
+    surface.vertices = vertices_of(surface.facets);
     for (Vertex v : surface.vertices) surface.displacement.push_back(dt * velocity[v] + 0.5 * dt * dt * rate[v]);
     return surface;
 }

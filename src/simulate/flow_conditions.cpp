@@ -20,14 +20,6 @@ bool is_fluid(const FlowOptions& options, Region region) {
     return options.regions[static_cast<std::size_t>(region.value)].has_value();
 }
 
-std::vector<Vertex> vertices_of(const std::vector<std::array<Vertex, 3>>& facets) {
-    std::vector<Vertex> vertices;
-    for (const auto& facet : facets) vertices.insert(vertices.end(), facet.begin(), facet.end());
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-}
-
 Vec3 centre_of(const Mesh& mesh, Region body) {
     Vec3 sum;
     double volume = 0;

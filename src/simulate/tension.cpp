@@ -5,10 +5,6 @@
 namespace kropla {
 namespace {
 
-std::size_t place_of(std::span<const Vertex> vertices, Vertex v) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
-}
-
 /// A triangle, seen from its corners.
 struct Facet {
     std::array<std::size_t, 3> at;     // places of its corners
@@ -74,6 +70,18 @@ void take_off_all_together(const std::vector<Vec3>& place, const std::vector<dou
 }
 
 }  // namespace
+
+std::vector<Vertex> vertices_of(std::span<const std::array<Vertex, 3>> facets) {
+    std::vector<Vertex> vertices;
+    for (const auto& facet : facets) vertices.insert(vertices.end(), facet.begin(), facet.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+std::size_t place_of(std::span<const Vertex> vertices, Vertex v) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
+}
 
 std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets, std::span<const Vertex> vertices,
                                   const Array<Vertex, Vec3>& position) {

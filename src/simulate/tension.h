@@ -46,6 +46,10 @@ struct SurfaceTension {
 };
 [[nodiscard]] SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex, Vec3>& position);
 
+/// The vertices of facets, ascending; and the place of one among them.
+[[nodiscard]] std::vector<Vertex> vertices_of(std::span<const std::array<Vertex, 3>> facets);
+[[nodiscard]] std::size_t place_of(std::span<const Vertex> vertices, Vertex v);
+
 /// Unit normals at the vertices, along what the volume gains with them.
 [[nodiscard]] std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets,
                                                 std::span<const Vertex> vertices, const Array<Vertex, Vec3>& position);
