@@ -9,6 +9,7 @@
 #include "simulate/flow_energy.h"
 #include "simulate/flow_mass.h"
 #include "simulate/flow_solver.h"
+#include "simulate/flow_surfaces.h"
 #include "simulate/stop.h"
 
 #include <algorithm>
@@ -71,6 +72,7 @@ public:
           cells_(flow_cells(current, options)),
           blocks_(make_block_pattern(current, cells_, ranks, upper_sides(current, cells_))),
           boundary_(flow_boundary(current, options, t + dt, temperature)),
+          surfaces_(blocks_.pattern, boundary_.liquids),
           conditions_(flow_conditions(before, current, options, boundary_, start.velocity, t, dt)),
           material_(flow_materials(current, options, temperature)), guess_(start),
           solver_(ranks, blocks_, unknowns()) {
@@ -126,12 +128,9 @@ public:
             report.face_flux[face] = flux_through(boundary_.faces[face], current_.position, guess_.velocity);
             report.net_flux += report.face_flux[face];
         }
-        for (std::size_t s = 0; s < boundary_.liquids.size(); ++s) {
-            const LiquidSurface& liquid = boundary_.liquids[s];
-            report.surfaces.push_back({liquid.body, liquid.facets, liquid.vertices, gone_[s], tensions_[s].area});
-        }
+        report.surfaces = surfaces_.courses();
         report.energy = flow_energy(current_, cells_, material_, guess_.velocity, options_.gravity);
-        for (const SurfaceTension& acts : tensions_) report.energy.surface += acts.energy;
+        report.energy.surface = surfaces_.energy();
         report.dissipated = dissipated_;
         report_mass(report);
         report.face_force = face_forces(reaction);
@@ -256,7 +255,7 @@ private:
                               guess_,           material_, conditions_.open,   open_pressure,
                               options_.gravity, per_time,  options_.convection, upper()};
         find_shares(position);
-        pull_surfaces(position, at.share, per_time);
+        surfaces_.begin(position, mesh_velocity_, at.share * dt_);
         const bool fresh = !solver_.has_matrix();
         assemble(stage, fresh);
         if (fresh) {
@@ -285,57 +284,7 @@ private:
         if (left > 0) error_ = left / largest_left_;
         if (masses_) note_passed(at.weight, position);
         dissipated_ += at.weight * dt_ * dissipation(current_, cells_, position, material_, guess_.velocity);
-        for (std::size_t s = 0; s < boundary_.liquids.size(); ++s)
-            for (std::size_t i = 0; i < gone_[s].size(); ++i)
-                gone_[s][i] += at.weight * dt_ * guess_.velocity[boundary_.liquids[s].vertices[i]];
-    }
-
-    /// What pulls the surfaces of liquids in a stage; and how far they are behind the flow already, but for what it takes
-    /// them on in this one.
-    void pull_surfaces(const Array<Vertex, Vec3>& position, double share, double per_time) {
-        const std::size_t count = boundary_.liquids.size();
-        tensions_.clear();
-        gone_.resize(count);
-        behind_.resize(count);
-        for (std::size_t s = 0; s < count; ++s) {
-            const LiquidSurface& liquid = boundary_.liquids[s];
-            tensions_.push_back(surface_tension(liquid, position));
-            gone_[s].resize(liquid.vertices.size());
-            behind_[s] = gone_[s];
-            for (std::size_t i = 0; i < liquid.vertices.size() && per_time > 0; ++i)
-                behind_[s][i] -= share * dt_ * mesh_velocity_[liquid.vertices[i]];
-        }
-    }
-
-    /// Of the tension, with what it gains as the surfaces go on.
-    void add_tension(const FlowStage& stage, bool derivative) {
-        const double time = stage.per_time > 0 ? 1 / stage.per_time : 0;
-        const auto row_of = [&](Vertex v) { return static_cast<std::size_t>(numbering().row[v] - rows().first_row); };
-        for (std::size_t s = 0; s < tensions_.size(); ++s) {
-            const std::vector<Vertex>& vertices = boundary_.liquids[s].vertices;
-            const SurfaceTension& acts = tensions_[s];
-            const auto add = [&](std::size_t i, const Vec3& pull) {
-                const std::size_t row = row_of(vertices[i]);  // huge if before the first
-                for (int m = 0; m < 3 && row < rows().count(); ++m)
-                    system_.residual[block_size * row + static_cast<std::size_t>(m)] -= pull[m];
-            };
-            for (std::size_t i = 0; i < vertices.size(); ++i) add(i, acts.force[i]);
-            for (const auto& [i, j, stiffness] : acts.bonds) {
-                const Vec3 further = behind_[s][j] + time * guess_.velocity[vertices[j]];
-                add(i, -stiffness * dot(acts.normal[j], further) * acts.normal[i]);
-                if (!derivative || row_of(vertices[i]) >= rows().count()) continue;
-                double* const block = system_.block(place_of(row_of(vertices[i]), numbering().row[vertices[j]]));
-                for (int c = 0; c < 3; ++c)
-                    for (int m = 0; m < 3; ++m)
-                        block[block_size * static_cast<std::size_t>(c) + static_cast<std::size_t>(m)] +=
-                            time * stiffness * acts.normal[i][m] * acts.normal[j][c];
-            }
-        }
-    }
-    /// Of a column in an owned row.
-    [[nodiscard]] std::size_t place_of(std::size_t row, PetscInt column) const {
-        const auto begin = rows().column.begin() + rows().begin[row], end = rows().column.begin() + rows().begin[row + 1];
-        return static_cast<std::size_t>(std::lower_bound(begin, end, column) - rows().column.begin());
+        surfaces_.end(guess_.velocity, at.weight * dt_);
     }
 
     /// Where the density depends on the temperature.
@@ -402,7 +351,7 @@ private:
             current_, blocks_,
             [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
             system_, ranks_.watch);
-        add_tension(stage, derivative);
+        surfaces_.add(guess_.velocity, stage.per_time > 0 ? 1 / stage.per_time : 0, derivative, system_);
         for (std::size_t r = 0; r < rows().count() && masses_; ++r)
             system_.residual[block_size * r + 3] += expansion_[vertex_of(r)];
         reaction_ = system_.residual;
@@ -579,6 +528,7 @@ private:
     Cells cells_;
     BlockPattern blocks_;
     FlowBoundary boundary_;
+    FlowSurfaces surfaces_;
     FlowConditions conditions_;
     Array<Region, FlowMaterial> material_;
     Region expanding_;                     // whose density depends on the temperature; only then:
@@ -590,10 +540,6 @@ private:
     BlockSystem system_;
     std::vector<double> reaction_;  // the residual of the last assembly, as it is
     std::vector<double> share_of_volume_;  // per row
-    // Of the surfaces of liquids, in the order of the boundary's:
-    std::vector<SurfaceTension> tensions_;        // in this stage
-    std::vector<std::vector<Vec3>> gone_;         // [m] with the flow, in the stages so far
-    std::vector<std::vector<Vec3>> behind_;       // [m] of that the mesh has not done
     Array<Vertex, Vec3> mesh_velocity_;
     FlowSolver solver_;
     bool triangular_ = false;  // the preconditioner
