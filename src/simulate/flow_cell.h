@@ -14,6 +14,12 @@ struct FlowMaterial {
     Array<Vertex, Vec3> force;                   // [N/m^3] at vertices, besides gravity; empty: none
 };
 
+/// Of a cell: a constant, or the mean of values at vertices, if there are any.
+template <std::size_t n>
+[[nodiscard]] double mean_property(double value, const Array<Vertex, double>& values, const std::array<Vertex, n>& vertices) {
+    return values.empty() ? value : mean_of(at_corners(values, vertices));
+}
+
 /// A stage of a step: all that a cell needs to know of it. Arrays that are empty are of zeros.
 struct FlowStage {
     const Mesh& mesh;                          // for its connectivity

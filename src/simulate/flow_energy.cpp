@@ -6,11 +6,6 @@
 namespace kropla {
 namespace {
 
-template <std::size_t n>
-double mean_property(double value, const Array<Vertex, double>& values, const std::array<Vertex, n>& vertices) {
-    return values.empty() ? value : mean_of(at_corners(values, vertices));
-}
-
 /// Calls `visit(vertices, points of the cell, material)`.
 template <class Visit>
 void for_each_points(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& position,

@@ -8,7 +8,7 @@
 #include "simulate/flow_conditions.h"
 #include "simulate/flow_energy.h"
 #include "simulate/flow_mass.h"
-#include "simulate/flow_solver.h"
+#include "simulate/flow_scales.h"
 #include "simulate/flow_surfaces.h"
 #include "simulate/stop.h"
 
@@ -29,9 +29,6 @@ constexpr double forcing = 1e-4;     // [-] of the residual, at the best: a step
 constexpr double steady_forcing = 1e-2;  // [-] of that towards a steady state, which is far
 constexpr double stagnation = 0.5;   // [-] of the residual: a pass that leaves more got nowhere, and
 constexpr double rounding = 1e-12;   // [-] of the terms of the residual is where that is no failure
-constexpr int many_vertices = 60000;  // where multigrid becomes cheaper than incomplete factors, if nearly
-constexpr double next_to_all = 0.95;  // [-] of the cells have rates of viscosity so many times
-constexpr double viscous_share = 2;   // [-] the others; measured at Reynolds numbers of 0 and 100
 
 Array<Vertex, Vec3> between(const Mesh& before, const Mesh& current, double share) {
     if (share == 1) return current.position;
@@ -46,21 +43,6 @@ Array<Vertex, Vec3> mesh_velocities(const Mesh& before, const Mesh& current, dou
     for (Vertex v : velocity.indices())
         velocity[v] = alive(current, v) ? (current.position[v] - before.position[v]) / dt : Vec3{};
     return velocity;
-}
-
-/// Of a conduction-like matrix, what the pressure's preconditioner needs of a cell: in `matrix` that of the
-/// Laplacian.
-template <std::size_t n>
-CellSystem<n> pressure_cell(const CellPoints<n>& points, double laplacian, double viscous) {
-    CellSystem<n> system;
-    for (std::size_t k = 0; k < points.size(); ++k)
-        for (std::size_t i = 0; i < n; ++i) {
-            system.held[i] += viscous * points[k].volume * shape_means<n>[k].value[i];
-            for (std::size_t j = 0; j < n; ++j)
-                system.matrix[i][j] += laplacian / points[k].volume *
-                                       dot(points[k].volume_gradient[i], points[k].volume_gradient[j]);
-        }
-    return system;
 }
 
 /// A step while it is solved.
@@ -259,7 +241,7 @@ private:
         const bool fresh = !solver_.has_matrix();
         assemble(stage, fresh);
         if (fresh) {
-            triangular_ = is_viscous(stage);
+            triangular_ = is_viscous(ranks_, blocks_.pattern, stage);
             take_matrix(stage);
         }
         double left = solver_.size(system_.residual);
@@ -393,7 +375,7 @@ private:
 
     void take_matrix(const FlowStage& stage) {
         if (!triangular_) return solver_.take(nullptr);
-        const PressureScales scales = pressure_scales(stage);
+        const PressureScales scales = pressure_scales(ranks_, blocks_.pattern, stage);
         solver_.take(&scales);
     }
 
@@ -419,49 +401,6 @@ private:
             all.insert(all.end(), {u.x, u.y, u.z, pressure_of(v, further)});
         });
         return all;
-    }
-
-    /// Is the system a large one of viscosity alone, in next to all cells?
-    [[nodiscard]] bool is_viscous(const FlowStage& stage) const {
-        if (numbering().rows() < many_vertices || !upper().empty()) return false;
-        std::array<double, 2> mine = {0, 0}, all = {0, 0};  // cells, and those where viscosity rules
-        for_each_cell(blocks_.pattern.cells, [&](const auto& cell) {
-            const FlowMaterial& material = material_[cell_region(current_, cell)];
-            const auto vertices = cell_vertices(current_, cell);
-            const double kinematic = property_of(material.viscosity, material.viscosities, vertices) /
-                                     property_of(material.density, material.densities, vertices);
-            const double length =
-                std::cbrt(total_volume(cell_points(corners(stage.position, current_, cell))));
-            mine[0] += 1;
-            if (kinematic / (length * length) > viscous_share * (stage.per_time + crossing_rate(stage, cell)))
-                mine[1] += 1;
-        });
-        MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
-        return all[1] > next_to_all * all[0];
-    }
-
-    [[nodiscard]] PressureScales pressure_scales(const FlowStage& stage) const {
-        CellSystems systems;
-        ask_cells(
-            blocks_.pattern.cells,
-            [&](const auto& cell) {
-                const FlowMaterial& material = material_[cell_region(current_, cell)];
-                const auto vertices = cell_vertices(current_, cell);
-                const double density = property_of(material.density, material.densities, vertices),
-                             viscosity = property_of(material.viscosity, material.viscosities, vertices);
-                const double laplacian = stage.per_time > 0 ? 1 / (density * stage.per_time) : 0;
-                return pressure_cell(cell_points(corners(stage.position, current_, cell)), laplacian,
-                                     1 / viscosity);
-            },
-            [](const auto&) { return true; }, systems, ranks_.watch);
-        LinearSystem sums(rows());
-        add_cells(blocks_.pattern, systems, sums);
-        return {std::move(sums.value), std::move(sums.held)};
-    }
-    template <std::size_t n>
-    static double property_of(double value, const Array<Vertex, double>& values,
-                              const std::array<Vertex, n>& vertices) {
-        return values.empty() ? value : mean_of(at_corners(values, vertices));
     }
 
     /// Where faces meet, each direction is of the one across it, else of all alike that hold it.
