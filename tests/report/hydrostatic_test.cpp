@@ -5,18 +5,33 @@
 namespace kropla {
 namespace {
 
-constexpr const char* box = "[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 4]\n";
-constexpr const char* liquid = "[flow.region.\"surroundings\"]\ndensity = 1000\n";
+constexpr const char* at_rest = R"(
+[domain]
+min = [0, 0, 0]
+max = [1, 1, 4]
+[flow]
+gravity = [0, 0, -10]
+[flow.region."surroundings"]
+density = 1000
+)";
+
+constexpr const char* weightless = R"(
+[domain]
+min = [0, 0, 0]
+max = [1, 1, 4]
+[flow.region."surroundings"]
+density = 1000
+)";
 
 TEST(Hydrostatic, RisesDownwards) {
-    const Hydrostatic at_rest = hydrostatic(std::string(box) + "[flow]\ngravity = [0, 0, -10]\n" + liquid);
-    EXPECT_TRUE(is_there(at_rest));
-    EXPECT_EQ(pressure_at(at_rest, {0.3, 0.2, 2}), 0);
-    EXPECT_EQ(pressure_at(at_rest, {0.3, 0.2, 1}), 1e4);
+    const Hydrostatic column = hydrostatic(at_rest);
+    EXPECT_TRUE(is_there(column));
+    EXPECT_EQ(pressure_at(column, {0.3, 0.2, 2}), 0);
+    EXPECT_EQ(pressure_at(column, {0.3, 0.2, 1}), 1e4);
 }
 
 TEST(Hydrostatic, IsNotThereWithoutGravity) {
-    EXPECT_FALSE(is_there(hydrostatic(std::string(box) + liquid)));
+    EXPECT_FALSE(is_there(hydrostatic(weightless)));
     EXPECT_FALSE(is_there(hydrostatic("")));
 }
 
