@@ -7,6 +7,7 @@
 # make bench-peers  the moving droplet by Kropla and by the mesh generators that are installed (Gmsh, TetGen), one
 #                 table; STEPS=10: fewer meshes of the others
 # make bench-flow  a step of flow around a moving sphere by Kropla and by OpenFOAM, if it is installed; STEPS=60: more
+# make bench-drop  a drop that rings and one at rest by Kropla and by OpenFOAM, if it is installed; END=2.6: shorter
 # make bench-engine  work in proportion to change, and what a second thread saves
 # make bench-strategies  the same motion by our method, by the paper's and by three plainer ways, one table
 # make bench-spread  ways to spread a body's displacement into its surroundings
@@ -15,8 +16,8 @@
 # make validate   heat and flow, by problems with known solutions, as fine as the tests take them and finer: docs/validation.md
 # Each installs the Debian packages that are missing.
 
-.PHONY: all demo test flood bench bench-peers bench-flow bench-engine bench-strategies bench-spread bench-transfer \
-        endurance validate packages configure clean
+.PHONY: all demo test flood bench bench-peers bench-flow bench-drop bench-engine bench-strategies bench-spread \
+        bench-transfer endurance validate packages configure clean
 
 all: configure
 	cmake --build --preset release
@@ -54,6 +55,11 @@ bench-flow: packages
 	cmake --preset bench
 	cmake --build --preset bench --target kropla
 	bench/flow-peers build/bench/bin/kropla build/bench/flow $(if $(STEPS),--steps $(STEPS))
+
+bench-drop: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla
+	bench/drop-peers build/bench/bin/kropla build/bench/drop $(if $(END),--end $(END))
 
 bench-engine: packages
 	cmake --preset bench

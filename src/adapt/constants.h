@@ -155,6 +155,8 @@ inline constexpr double cut_out_of_trouble = 50;
 // --- What is told (refusal.cpp, fits_domain.cpp)
 /// [target sizes] across a place of trouble: in less, a cell has to be flat, or smaller than wanted, and the gap is named.
 inline constexpr double narrow_in_sizes = 1;
+/// [target sizes] across a neck of a body that deforms, likewise: there triangles lie opposite each other.
+inline constexpr double narrow_neck_in_sizes = 1.5;
 /// [of the box's width] vertices on a face may be off it. Smaller: rounding is refused. Larger: a box that does not fit.
 inline constexpr double most_off_its_face = 1e-9;
 /// [surface sizes] vertices of a body may be off its surface. Smaller: the generator's own meshes, 0.15 at most off, come

@@ -31,18 +31,17 @@ std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
     return vertices;
 }
 
-/// The cells of bodies at the shells of layers inside of them.
-std::vector<Tet> cells_at_inner_shells(const Mesh& mesh) {
+/// The cells of bodies at the shells of layers inside of them, where these bodies move rigidly: no zone has them.
+std::vector<Tet> cells_at_inner_shells(const Mesh& mesh, const Domain& domain) {
     IndexSet<Tet> cells;
     for (const PrismLayer& layer : mesh.layers) {
-        if (layer.region != layer.body) continue;
+        if (layer.region != layer.body || domain.bodies[as_size(layer.body.value - 1)].deformation) continue;
         for (int column = 0; column < count_columns(layer); ++column)
             for (Tet t : ball(mesh, column_vertex(layer, column, layer.count))) cells.insert(t);
     }
     return cells.list();
 }
 
-/// Of those of the cells that are alive.
 /// Of the cells that are new, and of those with a vertex that was moved.
 double worst_aspect_ratio_of(const Mesh& mesh, const Changes& changes) {
     double worst = 0;
@@ -89,7 +88,7 @@ MeshStep::MeshStep(Domain domain, PlannedMotions planned, Mesh mesh, double t, c
     bodies_.surroundings = options.paper ? Follow::rest : Follow::spread;
     find_deforming();
     find_uneven();
-    at_inner_shells_ = cells_at_inner_shells(reference_);
+    at_inner_shells_ = cells_at_inner_shells(reference_, domain_);
 }
 
 Snapshot MeshStep::snapshot_at(double t) const {

@@ -105,7 +105,7 @@ private:
     MovedBodies bodies_;
     std::vector<BodySurface> adapted_;  // surfaces that the step changes
     std::vector<char> is_uneven_;    // per body: its triangles became smaller once for the sake of a gap
-    std::vector<Tet> at_inner_shells_;         // cells of bodies that do not move rigidly: at the shells of inner layers
+    std::vector<Tet> at_inner_shells_;  // cells of bodies that move rigidly: at the shells of inner layers
     Mesh reference_, before_, current_;
     double time_, target_time_;
     Zone zone_;                      // what the step moves,

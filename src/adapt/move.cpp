@@ -303,7 +303,8 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, const MovedBod
     zone.deforming.clear();
     for (const BodySurface& surface : bodies.deforming) zone.deforming.push_back(region_of_body(surface.body));
     for (const auto& body : bodies.vertices) begin_with(body, surroundings);
-    for (const BodySurface& surface : bodies.deforming) begin_with(surface.vertices, region_of_body(surface.body));
+    for (const BodySurface& surface : bodies.deforming)
+        begin_with(bodies.vertices[surface.body], region_of_body(surface.body));
     add_cells(zone, mesh, cells);
     auto front = zone.has.list();
     std::vector<Tet> around;

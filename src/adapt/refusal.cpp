@@ -22,16 +22,31 @@ std::string in_gap(const Domain& domain, const Approach& near, const Trouble& tr
                             : "a smaller one may do");
 }
 
+/// A neck of a body that deforms, or a notch, as narrow as a size or two. Empty where there is none.
+std::string in_neck(const Snapshot& at, const Body& body, std::size_t number, const Trouble& trouble) {
+    if (!body.deformation) return "";
+    const Shape& shape = at.shapes[number];
+    const double size = surface_size(at, number, trouble.place), narrow = narrow_neck_in_sizes * size;
+    const double neck = neck_at(shape, trouble.place, true, narrow), notch = neck_at(shape, trouble.place, false, narrow);
+    const double width = std::min(neck, notch);
+    if (width > narrow) return "";
+    return named(body) + (neck <= notch ? " has a neck, " : " has a notch, ") + metres(width) + " across, at " +
+           place_words(closest_point(shape, trouble.place)) + ", " + written(width / size) + " of the size = " + metres(size) +
+           " of its triangles: too narrow for the mesh; a smaller size may do";
+}
+
 std::string in_motion(const Domain& domain, std::size_t body, const Trouble& trouble) {
     constexpr const char* help = "; a smaller size.surface or size.growth may help";
     const Body& moves = domain.bodies[body];
+    const std::string by_layer =
+        moves.deformation && moves.layer ? "; the triangles under a layer stay, without one they would be adapted" : "";
     if (trouble.time == trouble.start) return "the mesh near " + named(moves) + " is not good enough" + help;
     const double way = moves.deformation
                            ? distance(trouble.place, moves.deformation(trouble.place, trouble.start, trouble.time))
                            : way_between(moves.shape, moves.motion(trouble.start), moves.motion(trouble.time));
     return "the mesh near " + named(moves) + " does not follow it, which moves by " + metres(way) + ", " +
            written(way / domain.size.surface) + " of size.surface, within " +
-           time_words(trouble.time - trouble.start) + help;
+           time_words(trouble.time - trouble.start) + help + by_layer;
 }
 
 }  // namespace
@@ -45,7 +60,8 @@ Refusal explained(const Domain& domain, const Trouble& trouble, double advised_d
         const Approach& near = *refusal.near;
         const bool is_gap =
             near.gap > 0 && width_at(at, near, trouble.place) < narrow_in_sizes * target_size(at, trouble.place);
-        what = is_gap ? in_gap(domain, near, trouble) : in_motion(domain, near.body, trouble);
+        what = is_gap ? in_gap(domain, near, trouble) : in_neck(at, domain.bodies[near.body], near.body, trouble);
+        if (what.empty()) what = in_motion(domain, near.body, trouble);
     }
     refusal.why = "at t = " + time_words(trouble.time) + ' ' + what + " (" + cell_words(trouble) + ')';
     return refusal;

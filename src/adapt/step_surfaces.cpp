@@ -34,7 +34,13 @@ std::vector<Tet> cells_at(const Mesh& mesh, std::span<const Vertex> vertices) {
 void MeshStep::find_deforming() {
     bodies_.deforming = deforming_surfaces(domain_, reference_);
     for (const BodySurface& surface : bodies_.deforming) {
-        bodies_.vertices[surface.body] = surface.vertices;
+        std::vector<Vertex>& vertices = bodies_.vertices[surface.body];
+        vertices = surface.vertices;
+        for (const PrismLayer& layer : reference_.layers)
+            if (layer.body == region_of_body(surface.body))
+                vertices.insert(vertices.end(), layer.columns.begin(), layer.columns.end());
+        std::ranges::sort(vertices);
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
         domain_.bodies[surface.body].shape = shape_of(surface, reference_.position, domain_.box);
     }
 }
@@ -61,7 +67,7 @@ std::vector<BodySurface> MeshStep::surfaces_to_adapt(const Snapshot& at_time) {
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body) {
         const Body& it = domain_.bodies[body];
         const bool uneven = is_uneven_[body] != 0 || in_gaps[body] != 0 || has_local_size(at_time, body);
-        if (it.deformation || (!it.layer && uneven)) bodies.push_back(body);
+        if (!it.layer && (it.deformation || uneven)) bodies.push_back(body);
     }
     auto surfaces = body_surfaces(current_, bodies);
     std::erase_if(surfaces, [&](const BodySurface& surface) {

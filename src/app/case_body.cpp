@@ -224,9 +224,6 @@ void read_bodies(const CaseTable& file, Case& it) {
         if (table.has("size") && !is_of_place(table, "size")) body.size = table.length("size");
         read_motion(table, it, body, written);
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
-        if (body.layer && body.deformation)
-            table.refuse("layer", fmt::format("stands on bodies that move rigidly; this one deforms (motion.kind = \"{}\")",
-                                              table.table("motion").text("kind")));
         if (reached_faces(body.shape) != 0) {
             refuse_with_cut(table, it, body);
             body = cut_body(std::move(body));

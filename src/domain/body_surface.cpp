@@ -1,13 +1,28 @@
 #include "domain/body_surface.h"
 
+#include "base/for_all.h"
 #include "domain/body_tree.h"
 #include "domain/triangulated_surface.h"
+#include <kropla/mesh/prisms.h>
 #include <kropla/mesh/topology.h>
 
 #include <algorithm>
 #include <utility>
 
 namespace kropla {
+namespace {
+
+/// The triangles that a layer stands on, counter-clockwise seen from outside the body.
+std::vector<std::array<Vertex, 3>> wall_triangles(const PrismLayer& layer) {
+    std::vector<std::array<Vertex, 3>> triangles;
+    for (const auto& [a, b, c] : layer.triangles) {
+        triangles.push_back({column_vertex(layer, a, 0), column_vertex(layer, b, 0), column_vertex(layer, c, 0)});
+        if (layer.region == layer.body) std::swap(triangles.back()[1], triangles.back()[2]);
+    }
+    return triangles;
+}
+
+}  // namespace
 
 std::vector<BodySurface> body_surfaces(const Mesh& mesh, std::span<const std::size_t> bodies) {
     constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -19,15 +34,18 @@ std::vector<BodySurface> body_surfaces(const Mesh& mesh, std::span<const std::si
         surfaces.push_back({body, {}, {}});
     }
     if (surfaces.empty()) return surfaces;
+    const auto of = [&](Region region) {
+        return as_size(region.value) < of_region.size() ? of_region[as_size(region.value)] : none;
+    };
     for (Tet t : mesh.tets.indices()) {
-        if (!alive(mesh, t)) continue;
-        const std::size_t region = as_size(mesh.region[t].value);
-        const std::size_t which = region < of_region.size() ? of_region[region] : none;
-        if (which == none) continue;
+        if (!alive(mesh, t) || of(mesh.region[t]) == none) continue;
         for (int corner = 0; corner < 4; ++corner)
             if (const Tet n = mesh.neighbour[t][as_size(corner)]; n.exists() && mesh.region[n] != mesh.region[t])
-                surfaces[which].triangles.push_back(facet_vertices(mesh, {t, corner}));
+                surfaces[of(mesh.region[t])].triangles.push_back(facet_vertices(mesh, {t, corner}));
     }
+    for (const PrismLayer& layer : mesh.layers)
+        if (of(layer.body) != none && surfaces[of(layer.body)].triangles.empty())
+            surfaces[of(layer.body)].triangles = wall_triangles(layer);
     for (BodySurface& surface : surfaces) {
         for (const auto& triangle : surface.triangles)
             surface.vertices.insert(surface.vertices.end(), triangle.begin(), triangle.end());
@@ -56,10 +74,61 @@ Shape shape_of(const BodySurface& surface, const Array<Vertex, Vec3>& places, co
     return shape_of_facets(std::move(points), std::move(triangles), &within);
 }
 
+namespace {
+
+/// Sizes rise by no more than `steepest_growth` from point to point.
+void grade(const TriangulatedSurface& surface, std::vector<double>& size) {
+    for (bool lower = true; lower;) {
+        lower = false;
+        for (const auto& triangle : surface.triangles())
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t a = as_size(triangle[i]), b = as_size(triangle[(i + 1) % 3]);
+                const double rise = steepest_growth * distance(surface.points()[a], surface.points()[b]);
+                for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
+                    if (size[to] <= size[from] + rise) continue;
+                    size[to] = size[from] + rise;
+                    lower = true;
+                }
+            }
+    }
+}
+
+/// Sizes on the surface of a body, of at most `most` [m], that fall in its necks and notches down to `least`; none where
+/// there is none.
+LocalSize size_in_necks(const Shape& shape, double least, double most) {
+    const TriangulatedSurface& surface = *shape.surface;
+    std::vector<double> size(surface.points().size());
+    for_all(size.size(), [&](std::size_t i) {
+        const Vec3& x = surface.points()[i];
+        const double asked = std::min(neck_share * surface.across(x, true, most / neck_share),
+                                      gap_share * surface.across(x, false, most / gap_share));
+        size[i] = std::clamp(asked, least, most);
+    });
+    if (std::ranges::all_of(size, [&](double s) { return s == most; })) return {};
+    grade(surface, size);
+    return [shape, size = std::move(size)](const Vec3& x) {
+        const auto& tree = shape.surface->tree();
+        const auto& triangle = tree.triangles()[tree.nearest(rotated_back(shape.orientation, x - shape.centre)).triangle];
+        double smallest = size[as_size(triangle[0])];
+        for (int corner : triangle) smallest = std::min(smallest, size[as_size(corner)]);
+        return smallest;
+    };
+}
+
+}  // namespace
+
 Snapshot snapshot(const Domain& domain, double t, std::span<const BodySurface> deforming,
                   const Array<Vertex, Vec3>& places, bool uneven) {
     Snapshot at = snapshot(domain, t);
-    for (const BodySurface& surface : deforming) at.shapes[surface.body] = shape_of(surface, places, domain.box);
+    for (const BodySurface& surface : deforming) {
+        Shape& shape = at.shapes[surface.body];
+        shape = shape_of(surface, places, domain.box);
+        const double most = surface_size(at, surface.body), least = std::min(least_size(at.size), most);
+        if (at.layers[surface.body]) continue;  // its triangles stay
+        LocalSize& local = at.local_sizes[surface.body];
+        if (LocalSize in_necks = size_in_necks(shape, least, most))
+            local = !local ? in_necks : [given = local, in_necks](const Vec3& x) { return std::min(given(x), in_necks(x)); };
+    }
     if (!deforming.empty()) plant_tree(at);
     at.narrow = uneven || has_narrow_gap(at);
     return at;

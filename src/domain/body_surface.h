@@ -14,7 +14,7 @@ struct BodySurface {
     std::vector<Vertex> vertices;                  // in ascending order
     std::vector<std::array<Vertex, 3>> triangles;  // counter-clockwise seen from outside
 };
-/// Of these bodies, which have no layers, in their order.
+/// Of these bodies, in their order.
 [[nodiscard]] std::vector<BodySurface> body_surfaces(const Mesh& mesh, std::span<const std::size_t> bodies);
 /// Of the bodies of the domain that have a deformation.
 [[nodiscard]] std::vector<BodySurface> deforming_surfaces(const Domain& domain, const Mesh& mesh);

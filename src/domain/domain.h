@@ -85,6 +85,8 @@ struct SizeField {
 [[nodiscard]] inline double least_size(const SizeField& size) { return size.least.value_or(size.surface / 20); }
 /// Target size by width of a gap: one cell across, its edges along the gap half as long again as the gap is wide.
 inline constexpr double gap_share = 1.5;
+/// And by width of a neck of a body that deforms: six edges around it.
+inline constexpr double neck_share = 0.5;
 /// [surface sizes] wider gaps are left as they are: the engine finds cells for them, at smaller changes.
 inline constexpr double narrow_gap = 0.3;
 

@@ -1,9 +1,7 @@
 // Room for layers: a function of where the shapes stand, not of what was before.
 //
 // Distances to planes and convex bodies change by at most one metre per metre, and so does their minimum:
-// heights that are a share of them are graded without any smoothing. Inside an ellipsoid the medial surface
-// lies in the plane across its shortest axis c; the ball that touches at x from inside has its centre there,
-// so its radius is c^2 / p, p the distance from the ellipsoid's centre to the tangent plane at x.
+// heights that are a share of them are graded without any smoothing.
 
 #include "domain/layer_room.h"
 
@@ -19,17 +17,6 @@ namespace kropla {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// The radius of the largest ball inside the shape that touches its surface at `x` [m]. Of a surface of triangles,
-/// infinite: a layer inside of it is the mesh's, which moves as one with the body and has shown that it fits.
-double touching_ball(const Shape& shape, const Vec3& x) {
-    if (shape.surface) return infinity;
-    const Vec3& a = shape.semi_axes;
-    const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
-    const double tangent_plane = 1 / norm({p.x / (a.x * a.x), p.y / (a.y * a.y), p.z / (a.z * a.z)});
-    const double shortest = std::min({a.x, a.y, a.z});
-    return shortest * (shortest / tangent_plane);
-}
 
 }  // namespace
 
@@ -68,7 +55,7 @@ double layer_thickness(const Snapshot& at, std::size_t body, bool inside, const 
     const LayerOptions* layer = layer_at_side(at, body, inside);
     if (!layer) return 0;
     const double room =
-        inside ? share_inside * touching_ball(at.shapes[body], x) : nearest_gap(at, body, x).room;
+        inside ? share_inside * thickness_at(at.shapes[body], x) / 2 : nearest_gap(at, body, x).room;
     return std::clamp(room, 0.0, thickness(*layer));
 }
 

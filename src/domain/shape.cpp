@@ -142,6 +142,22 @@ Vec3 closest_point(const Shape& shape, const Vec3& x) {
     return shape.centre + rotated(shape.orientation, closest);
 }
 
+double thickness_at(const Shape& shape, const Vec3& x) {
+    const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
+    if (shape.surface) return 2 * shape.surface->touching_ball(p, true, shape.surface->farthest());
+    // The medial surface of an ellipsoid lies in the plane across its shortest axis c: the ball's centre is there, and its
+    // radius c^2 / d, d the distance from the ellipsoid's centre to the tangent plane.
+    const Vec3& a = shape.semi_axes;
+    const double tangent_plane = 1 / norm({p.x / (a.x * a.x), p.y / (a.y * a.y), p.z / (a.z * a.z)});
+    const double shortest = std::min({a.x, a.y, a.z});
+    return 2 * shortest * (shortest / tangent_plane);
+}
+
+double neck_at(const Shape& shape, const Vec3& x, bool inside, double most) {
+    if (!shape.surface) return std::numeric_limits<double>::infinity();
+    return shape.surface->across(rotated_back(shape.orientation, x - shape.centre), inside, most);
+}
+
 double outer_radius(const Shape& shape) {
     return shape.surface ? shape.surface->farthest() : greatest(shape.semi_axes);
 }

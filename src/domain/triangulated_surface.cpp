@@ -309,16 +309,52 @@ TriangulatedSurface::TriangulatedSurface(std::vector<Vec3> points, std::vector<T
     centroid_ = origin + moment / volume_;
 }
 
+const Vec3& TriangulatedSurface::outwards(const NearestPlace& at) const {
+    const auto part = static_cast<std::size_t>(at.part);
+    if (part == 0) return inside_normal_[at.triangle];
+    if (part <= 3) return edge_normal_[at.triangle][part - 1];
+    return corner_normal_[as_size(triangles()[at.triangle][part - 4])];
+}
+
 double TriangulatedSurface::signed_distance(const Vec3& x) const {
     const NearestPlace nearest = tree_.nearest(x);
-    const auto outwards = [&]() -> const Vec3& {
-        const auto part = static_cast<std::size_t>(nearest.part);
-        if (part == 0) return inside_normal_[nearest.triangle];
-        if (part <= 3) return edge_normal_[nearest.triangle][part - 1];
-        return corner_normal_[as_size(triangles()[nearest.triangle][part - 4])];
-    };
     const double far = std::sqrt(nearest.squared_distance);
-    return dot(x - nearest.point, outwards()) < 0 ? -far : far;
+    return dot(x - nearest.point, outwards(nearest)) < 0 ? -far : far;
+}
+
+double TriangulatedSurface::across(const Vec3& x, bool inside, double most) const {
+    constexpr int steps = 60;         // each next to doubles the way, until the other side is near
+    constexpr double first = 1e-3;    // [-] of the most
+    constexpr double arrived = 1e-2;  // [-] of the way
+    const NearestPlace start = tree_.nearest(x);
+    const Vec3 normal = outwards(start) / norm(outwards(start));
+    const Vec3 direction = inside ? -normal : normal;
+    double way = first * most;
+    for (int step = 0; step < steps && way < most; ++step) {
+        const double room = signed_distance(start.point + way * direction) * (inside ? -1 : 1);
+        if (room <= arrived * way) return way;
+        way += room;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+double TriangulatedSurface::touching_ball(const Vec3& x, bool inside, double most) const {
+    constexpr int rounds = 100;  // each brings the ball to a point that was within it
+    constexpr double rounding = 1e-9;
+    const NearestPlace at = tree_.nearest(x);
+    const Vec3 normal = outwards(at) / norm(outwards(at)), direction = inside ? -normal : normal;
+    double radius = most;
+    for (int round = 0; round < rounds; ++round) {
+        double smaller = radius;
+        for (const Vec3& point : tree_.corners(tree_.nearest(at.point + radius * direction).triangle)) {
+            const double depth = dot(point - at.point, direction);
+            const double way = norm(point - at.point);
+            if (way > rounding * most && depth > rounding * way) smaller = std::min(smaller, way * way / (2 * depth));
+        }
+        if (smaller >= radius * (1 - rounding)) break;
+        radius = smaller;
+    }
+    return radius;
 }
 
 namespace {

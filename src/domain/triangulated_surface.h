@@ -27,6 +27,14 @@ public:
     /// distance is above that. In time that grows with the logarithm of the number of triangles.
     [[nodiscard]] double signed_distance(const Vec3& x) const;
     [[nodiscard]] Vec3 closest_point(const Vec3& x) const { return tree_.nearest(x).point; }
+    /// How far it is from the place nearest to `x`, along the normal there, inwards or outwards, to another part of the
+    /// surface [m], to a hundredth; infinite if not within `most`. By steps as long as there is room [Hart 1996, "Sphere
+    /// tracing"].
+    [[nodiscard]] double across(const Vec3& x, bool inside, double most) const;
+    /// The radius of the ball that touches it at the place nearest to `x`, from inside or outside, with none of its points
+    /// within [m], at most `most`: by a ball that shrinks [Ma, Bae, Choi 2012, "3D medial axis point approximation using
+    /// nearest neighbors and the normal field"].
+    [[nodiscard]] double touching_ball(const Vec3& x, bool inside, double most) const;
 
     [[nodiscard]] double volume() const { return volume_; }      ///< [m^3]
     [[nodiscard]] double area() const { return area_; }          ///< [m^2]
@@ -44,6 +52,8 @@ private:
     /// It is open; what it bounds has this volume [m^3] and reaches the faces of the box, given as the points are, on which
     /// it is open, or in whose middles it is.
     void ends_on(const Bounds& box, unsigned open, double volume);
+    /// A normal there, as long as it comes.
+    [[nodiscard]] const Vec3& outwards(const NearestPlace& at) const;
     static TriangulatedSurface joined(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles,
                                       bool is_checked, std::span<const unsigned> faces = {});
 

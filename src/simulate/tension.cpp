@@ -45,12 +45,24 @@ Vec3 solved(const std::array<Vec3, 3>& a, const Vec3& b) {
     return (b.x * yz + b.y * zx + b.z * xy) / dot(a[0], yz);
 }
 
-/// Makes forces have neither a sum nor a moment, by what a rigid motion does to masses as large as the shares.
-void take_off_all_together(const std::vector<Vec3>& place, const std::vector<double>& share, std::vector<Vec3>& force) {
-    Vec3 sum, moment, middle;
+/// Makes forces have no sum, by what is along the normals, as they are: a part along the surface would keep a drop at rest
+/// swimming for ever.
+void take_off_sum(const std::vector<Vec3>& normal, const std::vector<double>& share, std::vector<Vec3>& force) {
+    Vec3 sum;
+    std::array<Vec3, 3> spread = {};
+    for (std::size_t i = 0; i < force.size(); ++i) {
+        sum += force[i];
+        for (int m = 0; m < 3; ++m) spread[static_cast<std::size_t>(m)] += share[i] * normal[i][m] * normal[i];
+    }
+    const Vec3 push = solved(spread, sum);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= share[i] * dot(push, normal[i]) * normal[i];
+}
+
+/// Makes forces without a sum have no moment, by what a turn does to masses as large as the shares.
+void take_off_moment(const std::vector<Vec3>& place, const std::vector<double>& share, std::vector<Vec3>& force) {
+    Vec3 moment, middle;
     double mass = 0;
     for (std::size_t i = 0; i < place.size(); ++i) {
-        sum += force[i];
         middle += share[i] * place[i];
         mass += share[i];
     }
@@ -58,15 +70,14 @@ void take_off_all_together(const std::vector<Vec3>& place, const std::vector<dou
     std::array<Vec3, 3> inertia = {};
     for (std::size_t i = 0; i < place.size(); ++i) {
         const Vec3 r = place[i] - middle;
-        moment += cross(r, force[i] - share[i] / mass * sum);
+        moment += cross(r, force[i]);
         for (int m = 0; m < 3; ++m) {
             inertia[static_cast<std::size_t>(m)] -= share[i] * r[m] * r;
             inertia[static_cast<std::size_t>(m)][m] += share[i] * squared_norm(r);
         }
     }
     const Vec3 turning = solved(inertia, moment);
-    for (std::size_t i = 0; i < place.size(); ++i)
-        force[i] -= share[i] * (sum / mass + cross(turning, place[i] - middle));
+    for (std::size_t i = 0; i < place.size(); ++i) force[i] -= share[i] * cross(turning, place[i] - middle);
 }
 
 }  // namespace
@@ -95,10 +106,12 @@ std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets,
 }
 
 SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex, Vec3>& position) {
+    constexpr double rounding = 1e-9;  // [-] of the area
     const std::size_t count = surface.vertices.size();
     SurfaceTension acts{std::vector<Vec3>(count), surface_normals(surface.facets, surface.vertices, position), {}, 0, 0};
     std::vector<Vec3> pull(count), along(count);  // of the whole tension; of its gradient
     std::vector<double> share(count, 0);          // of the area
+    Vec3 all_together;                            // areas as vectors [m^2]
     for (const auto& corners : surface.facets) {
         const Facet facet = facet_of(surface.vertices, corners, position);
         const double area = norm(facet.area);
@@ -109,6 +122,7 @@ SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex,
             gradient += surface.tension[facet.at[i]] * facet.area_gradient[i];
         }
         acts.area += area;
+        all_together += facet.area;
         acts.energy += tension * area;
         for (std::size_t i = 0; i < 3; ++i) {
             pull[facet.at[i]] -= tension * facet.area_gradient[i];
@@ -120,13 +134,17 @@ SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex,
         }
     }
     sum_up(acts.bonds);
+    const bool is_closed = norm(all_together) <= rounding * acts.area;
     std::vector<Vec3> place;
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& n = acts.normal[i];
         acts.force[i] = dot(pull[i], n) * n + along[i] - dot(along[i], n) * n;
         place.push_back(position[surface.vertices[i]]);
     }
-    take_off_all_together(place, share, acts.force);
+    if (is_closed) {
+        take_off_sum(acts.normal, share, acts.force);
+        take_off_moment(place, share, acts.force);
+    }
     return acts;
 }
 

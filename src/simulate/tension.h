@@ -12,8 +12,8 @@ namespace kropla {
 // surface of triangles is pulled by - sum of sigma A grad_S phi_i over the triangles around. Of that only the part along
 // the normal is taken, that of what the volume gains with the vertex, to which the pressure's jump is opposed. So a
 // surface on which both are in balance at each vertex rests, wherever its vertices are along it. Along the surface pulls
-// the gradient of sigma, integral(phi_i grad_S sigma) (Marangoni). What is left of all together, as a force and as a
-// moment, is taken off as a rigid motion would: a closed surface neither pulls nor turns itself.
+// the gradient of sigma, integral(phi_i grad_S sigma) (Marangoni). A closed surface neither pulls nor turns itself: what is
+// left of all forces together is taken off along the normals, and of their moments as by a turn.
 //
 // Where the surface goes on by d against the places it is reckoned for, the tension follows in linear terms,
 // by integral(sigma grad_S (d.n) . grad_S (v.n)): symmetric and positive, which makes it stable for any time step.

@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "domain/body_surface.h"
 #include <kropla/base/error.h>
+#include <kropla/mesh/prisms.h>
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
 #include <kropla/step/advance.h>
@@ -151,6 +152,36 @@ TEST(Deforming, AnAffineFlowIsFollowedExactly) {
         EXPECT_LE(seen.transfer, 1e-14);
         const double grown = std::exp(3 * 1.5 * std::sin(2 * pi * t) / (2 * pi));
         EXPECT_NEAR(region_volume(moving.reference(), Region(1)) / volume(ellipsoid), grown, 1e-6 * grown) << t;
+    }
+}
+
+// Where there is room: two prisms high as asked, along the wall's normals; the wall's triangles stay.
+TEST(Deforming, LayersOnEachSideFollowTheirWall) {
+    const Shape ellipsoid{{0.5, 0.5, 0.5}, {0.2, 0.15, 0.17}, {}};
+    Domain domain = body_in_unit_box(ellipsoid, 0.07, [&](const Vec3& x, double t) {
+        return std::cos(2 * pi * t) * Vec3{1.5 * (x.x - 0.5), -0.5 * (x.y - 0.5), x.z - 0.5 + 0.3 * (x.x - 0.5)};
+    });
+    domain.bodies[0].layer = LayerOptions{.count = 2, .first_height = 0.008, .growth = 1.3, .side = LayerOptions::Side::both};
+    const Mesh start = initial_mesh(domain, 2);
+    MovingMesh moving(domain, start, 0);
+    Carried carried(start);
+    for (const double t : {0.25, 0.75, 1.0}) {
+        const Seen seen = follow(moving, carried, t, 8);
+        const Mesh& mesh = moving.reference();
+        EXPECT_LE(seen.worst, 5.6);
+        EXPECT_LE(seen.transfer, 1e-14);
+        EXPECT_LE(seen.off_one, 2e-14);
+        EXPECT_LE(seen.beyond, 1e-14);
+        const double grown = std::exp(2 * std::sin(2 * pi * t) / (2 * pi));
+        EXPECT_NEAR(region_volume(mesh, Region(1)) / volume(ellipsoid), grown, 1e-6 * grown) << t;
+        ASSERT_EQ(mesh.layers.size(), 2u);
+        for (Layer l : {Layer(0), Layer(1)}) {
+            EXPECT_EQ(layer_of(mesh, l), layer_of(start, l));
+            const LayerSummary layer = summarise_layer(mesh, l);
+            EXPECT_NEAR(layer.min_first_height, 0.008, 1e-12);
+            EXPECT_NEAR(layer.max_thickness, 0.008 * 2.3, 1e-12);
+            EXPECT_GE(layer.min_jacobian, 0.5);
+        }
     }
 }
 

@@ -120,6 +120,40 @@ TEST(SurfaceShape, AFineSphereIsNearlyTheSphere) {
     }
 }
 
+/// A ring about z: a tube of radius 0.3 about a circle of radius 1.
+Triangles ring_of_triangles(int along, int around) {
+    Triangles ring;
+    for (int i = 0; i < along; ++i)
+        for (int k = 0; k < around; ++k) {
+            const double a = 2 * std::numbers::pi * i / along, b = 2 * std::numbers::pi * k / around;
+            const double radius = 1 + 0.3 * std::cos(b);
+            ring.points.push_back({radius * std::cos(a), radius * std::sin(a), 0.3 * std::sin(b)});
+            const auto at = [&](int di, int dk) { return (i + di) % along * around + (k + dk) % around; };
+            ring.triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
+            ring.triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});
+        }
+    return ring;
+}
+
+TEST(SurfaceShape, IsAsThickAsTheBallThatTouchesItFromInside) {
+    const Vec3 centre{3, 0, 1};
+    const Shape sphere = shape_within(surface_of(sphere_of_triangles(4)), centre);
+    EXPECT_NEAR(thickness_at(sphere, centre + Vec3{0, 0, 1.2}), 2, 0.01);
+    EXPECT_NEAR(neck_at(sphere, centre + Vec3{0, 0, 1.2}, true, 3), 2, 0.03);
+    EXPECT_TRUE(std::isinf(neck_at(sphere, centre + Vec3{0, 0, 1.2}, true, 1.9)));
+    EXPECT_TRUE(std::isinf(neck_at(sphere, centre + Vec3{0, 0, 1.2}, false, 9)));
+    Triangles flat = sphere_of_triangles(5);
+    for (Vec3& x : flat.points) x.z *= 0.5;
+    const Shape flattened = shape_within(surface_of(flat), centre), ellipsoid{centre, {1, 1, 0.5}, {}};
+    for (const double angle : {0.1, 0.7, 1.5}) {
+        const Vec3 x = centre + Vec3{std::sin(angle), 0, 0.5 * std::cos(angle)};
+        EXPECT_NEAR(thickness_at(flattened, x) / thickness_at(ellipsoid, x), 1, 0.1) << angle;
+    }
+    const Shape ring = shape_within(surface_of(ring_of_triangles(160, 48)), centre);
+    EXPECT_NEAR(neck_at(ring, centre + Vec3{1, 0, 0.3}, true, 3), 0.6, 0.01);
+    EXPECT_NEAR(neck_at(ring, centre + Vec3{0.7, 0, 0}, false, 3), 1.4, 0.02) << "the hole";
+}
+
 TEST(SurfaceShape, MovesAsOne) {
     Random random{4};
     const Shape start = shape_within(surface_of(sphere_of_triangles(1)), random_vector(random, 1));
