@@ -152,6 +152,10 @@ inline constexpr int rings_of_trouble = 2;
 inline constexpr std::size_t refusals_until_all_anew = 3;
 inline constexpr double cut_out_of_trouble = 50;
 
+/// [good_enough] for the sake of worse cells triangles of a liquid's surface are changed. Smaller: more changes, each of which
+/// disturbs the flow. Larger: worse cells there. Chosen.
+inline constexpr double poor_at_liquids = 1.1;
+
 // --- What is told (refusal.cpp, fits_domain.cpp)
 /// [target sizes] across a place of trouble: in less, a cell has to be flat, or smaller than wanted, and the gap is named.
 inline constexpr double narrow_in_sizes = 1;

@@ -104,8 +104,11 @@ void MeshStep::improve_surfaces(std::vector<Tet> cells, const Snapshot& at_time,
         cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
         if (cells.empty()) return;
         Changes more;
-        for (const BodySurface& surface : adapted_)
-            more += improve_surface(current_, cells, region_of_body(surface.body), options);
+        for (const BodySurface& surface : adapted_) {
+            AdaptOptions of_surface = options;
+            if (domain_.bodies[surface.body].keeps_volume) of_surface.good_enough *= poor_at_liquids;
+            more += improve_surface(current_, cells, region_of_body(surface.body), of_surface);
+        }
         if (more.vertices.empty()) return;
         const auto at_moved = cells_at(current_, more.vertices);
         more.cells.insert(more.cells.end(), at_moved.begin(), at_moved.end());

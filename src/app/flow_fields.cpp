@@ -4,6 +4,7 @@
 #include "app/species_fields.h"
 #include "simulate/cells.h"
 #include "simulate/step_mean.h"
+#include <kropla/mesh/prisms.h>
 
 #include <fmt/format.h>
 
@@ -101,6 +102,22 @@ std::vector<NodalField> shown_pressures(const Mesh& mesh, const Case& it, std::s
         if (!outside[v]) shown[0].values[v] = within.values[v];
     shown.push_back(std::move(within));
     return shown;
+}
+
+CellField mean_pressure(const Mesh& mesh, const Case& it, std::span<const NodalField> fields) {
+    const FlowState flow = flow_state(it, fields);
+    CellField means{"pressure_mean", "Pa", {}};
+    const auto add = [&](Region region, const auto& vertices) {
+        const bool in_liquid = region.value > 0 && it.liquid[as_size(region.value - 1)] != 0;
+        const Array<Vertex, double>& pressure = in_liquid ? flow.within[as_size(region.value - 1)] : flow.pressure;
+        double sum = 0;
+        for (Vertex v : vertices) sum += pressure[v];
+        means.values.push_back(sum / static_cast<double>(vertices.size()));
+    };
+    for (Tet t : mesh.tets.indices())
+        if (alive(mesh, t)) add(mesh.region[t], mesh.tets[t]);
+    for (const Prism& prism : all_prisms(mesh)) add(layer_of(mesh, prism.layer).region, prism_vertices(mesh, prism));
+    return means;
 }
 
 FlowState flow_state(const Case& it, std::span<const NodalField> fields) {

@@ -37,6 +37,9 @@ void keep_flow_rate(const Case& it, const Array<Vertex, Vec3>& rate, std::span<N
 /// bodies, with that within them there.
 [[nodiscard]] std::vector<NodalField> shown_pressures(const Mesh& mesh, const Case& it, std::span<const NodalField> fields);
 
+/// The mean pressure of each cell, on its side of surfaces: with liquid bodies it shows the jump as it is.
+[[nodiscard]] CellField mean_pressure(const Mesh& mesh, const Case& it, std::span<const NodalField> fields);
+
 /// From the fields of a state, and back.
 [[nodiscard]] FlowState flow_state(const Case& it, std::span<const NodalField> fields);
 void keep_flow(const Case& it, const FlowState& flow, std::span<NodalField> fields);

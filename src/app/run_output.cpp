@@ -108,13 +108,15 @@ void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* 
     const Mesh& mesh = state.moving.reference();
     std::vector<NodalField> fields = shown_fields(mesh, it_, state.fields);
     std::vector<NodalVectorField> vectors;
+    std::vector<CellField> of_cells;
     if (it_.flow) {
+        if (!liquids_of(it_).empty()) of_cells.push_back(mean_pressure(mesh, it_, state.fields));
         FlowState flow = flow_state(it_, state.fields);
         std::ranges::move(shown_pressures(mesh, it_, state.fields), std::back_inserter(fields));
         if (expands(it_)) fields.push_back({"density", "kg/m^3", std::move(flow.density)});
         vectors.push_back({"velocity", "m/s", std::move(flow.velocity)});
     }
-    write_vtu(folder_ / frame_name(step), mesh, fields, watch, vectors);
+    write_vtu(folder_ / frame_name(step), mesh, fields, watch, vectors, of_cells);
     series_.push_back({state.moving.time(), frame_name(step)});
     write_pvd(folder_ / "frames.pvd", series_);
 }

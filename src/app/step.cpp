@@ -387,8 +387,10 @@ StepReport time_step(State& state, const Case& it, const Ranks& ranks, const Ste
     report.mesh = simulation.advance(options);
     report.bodies = states();
     if (it.contact) std::ranges::move(touch_warnings(it.domain, report.contact, report.mesh.time), std::back_inserter(report.warnings));
-    for (std::size_t body = 0; body < before.size(); ++body)
+    for (std::size_t body = 0; body < before.size(); ++body) {
+        report.gains.push_back(report.bodies[body].volume - before[body].volume);
         report.velocities.push_back((report.bodies[body].place - before[body].place) / report.mesh.dt);
+    }
     for (std::size_t body = 0; it.flow && body < before.size(); ++body)
         report.spins.push_back(it.free[body] ? state.free[body].spin
                                              : velocity_of(it.domain.bodies[body], report.mesh.time, report.mesh.dt).spin);

@@ -32,6 +32,7 @@ struct StepReport {
     FlowReport flow;                     // if it is simulated, of
     int rounds = 0;                      // solutions for it, until free bodies went where it took them
     std::vector<BodyState> bodies;       // at its end
+    std::vector<double> gains;           // [m^3] of the bodies' volumes in it
     std::vector<Vec3> velocities;        // [m/s] of the bodies' centroids, in the mean over it
     std::vector<Vec3> spins;             // [rad/s] of the bodies at its end, if there is a flow
     ContactReport contact;               // if the case has contacts

@@ -83,7 +83,7 @@ void add_energy(const StepReport& report, const HeatOptions& heat, StepRow& row)
 }
 
 /// What passes the faces, and how the flow was solved for.
-void add_flow(const StepReport& report, StepRow& row) {
+void add_flow(const StepReport& report, const Case& it, StepRow& row) {
     const FlowReport& flow = report.flow;
     for (std::size_t face = 0; face < face_keys.size(); ++face)
         row.push_back({fmt::format("volume_out_{} [m^3/s]", face_keys[face]), flow.face_flux[face]});
@@ -91,8 +91,12 @@ void add_flow(const StepReport& report, StepRow& row) {
                            {"surface_energy [J]", flow.energy.surface},
                            {"gravity_energy [J]", flow.energy.gravity},
                            {"dissipated [J]", flow.dissipated},
-                           {"mass_error_surroundings [kg]", flow.mass_error},
-                           {"courant", flow.largest_courant},
+                           {"mass_error_surroundings [kg]", flow.mass_error}});
+    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body)
+        if (it.liquid[body] != 0)
+            row.push_back({fmt::format("mass_error_{} [kg]", column_name(it.domain.bodies[body].name)),
+                           body < report.gains.size() ? it.flow->options.regions[body + 1]->density(0) * report.gains[body] : 0});
+    row.insert(row.end(), {{"courant", flow.largest_courant},
                            {"flow_passes", static_cast<double>(flow.passes)},
                            {"flow_iterations", static_cast<double>(flow.iterations)},
                            {"flow_rounds", static_cast<double>(report.rounds)}});
@@ -150,7 +154,7 @@ StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, 
     add_bodies(report, it, row);
     if (it.heat) add_energy(report, *it.heat, row);
     add_species(report, it, row);
-    if (it.flow) add_flow(report, row);
+    if (it.flow) add_flow(report, it, row);
     if (it.contact) row.push_back({"contacts", count(std::ranges::count_if(report.contact.contacts, &ContactForce::touches))});
     return row;
 }

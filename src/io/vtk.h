@@ -19,10 +19,11 @@ namespace kropla {
 ///                   for both, infinity is turned over, and 10 is R/r = 10 or a scaled corner Jacobian of 0.3
 ///     min_dihedral  [deg] between facets; of a prism measured at its corners, as its quads may be bent
 ///
-/// The file gets its name when it is complete. Throws FileError with the path and the system's reason; Interrupted if
+/// and those given. The file gets its name when it is complete. Throws FileError with the path and the system's reason; Interrupted if
 /// the watch says so, and what was there before stays.
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields = {},
-               const Watch* watch = nullptr, std::span<const NodalVectorField> vectors = {});
+               const Watch* watch = nullptr, std::span<const NodalVectorField> vectors = {},
+               std::span<const CellField> of_cells = {});
 
 /// Writes cells, facets of patches as cells of their own, and names, as VTU. Cell arrays: `region` and `layer` as above, and
 /// `patch` of facets; where a cell has none, -1. Names are arrays of texts of the whole file, "3 rotor": `region_names`

@@ -219,6 +219,13 @@ void add_field(vtkUnstructuredGrid* grid, const Field& field, const Array<Vertex
     grid->GetPointData()->AddArray(array);
 }
 
+void add_field(vtkUnstructuredGrid* grid, const CellField& field) {
+    const auto array = make_array<vtkDoubleArray>(field.name.c_str(), field.values.size());
+    array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field.unit.c_str());
+    for (std::size_t i = 0; i < field.values.size(); ++i) array->SetValue(static_cast<vtkIdType>(i), field.values[i]);
+    grid->GetCellData()->AddArray(array);
+}
+
 void write_grid(const std::filesystem::path& path, vtkUnstructuredGrid* grid, const Watch* watch) {
     const CaughtErrors errors;
     vtkNew<vtkXMLUnstructuredGridWriter> writer;
@@ -238,7 +245,7 @@ void write_grid(const std::filesystem::path& path, vtkUnstructuredGrid* grid, co
 }  // namespace
 
 void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<const NodalField> fields,
-               const Watch* watch, std::span<const NodalVectorField> vectors) {
+               const Watch* watch, std::span<const NodalVectorField> vectors, std::span<const CellField> of_cells) {
     heed(watch);
     const Compacted compacted = compact(mesh);
     heed(watch);
@@ -249,6 +256,7 @@ void write_vtu(const std::filesystem::path& path, const Mesh& mesh, std::span<co
     heed(watch);
     for (const NodalField& field : fields) add_field(grid, field, compacted.old_vertex);
     for (const NodalVectorField& field : vectors) add_field(grid, field, compacted.old_vertex);
+    for (const CellField& field : of_cells) add_field(grid, field);
     write_grid(path, grid, watch);
 }
 

@@ -19,6 +19,12 @@ struct NodalField {
     Array<Vertex, double> values;  // free slots hold nothing of meaning
 };
 
+/// The same of cells: living tets in order, then prisms as `all_prisms` has them.
+struct CellField {
+    std::string name, unit;
+    std::vector<double> values;
+};
+
 /// The same of vectors.
 struct NodalVectorField {
     std::string name;  // "velocity"

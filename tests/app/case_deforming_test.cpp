@@ -61,9 +61,6 @@ TEST(CaseDeforming, RefusalsNameKeyAndLine) {
               "case.toml: body[0].motion.velocity (line 11");
     EXPECT_EQ(refused("\"field\"", "\"fields\""), "case.toml: body[0].motion.kind (line 10): must be \"path\", \"field\", "
                                                  "\"free\" or \"flow\", got \"fields\"");
-    EXPECT_EQ(refused("[size]", "[body.layer]\ncount = 2\n[size]"),
-              "case.toml: body[0].layer (line 12): stands on bodies that move rigidly; this one deforms "
-              "(motion.kind = \"field\")");
     EXPECT_EQ(refused("[time]", "[quality]\nmethod = \"paper\"\n[time]"),
               "case.toml: quality.method (line 17): \"paper\" moves rigid bodies; body \"drop\" deforms");
     EXPECT_EQ(refused("steps = 4\n", "steps = 4\n[flow]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n"),

@@ -12,6 +12,7 @@
 
 #include <kropla/io/vtk.h>
 
+#include <vtkAppendPolyData.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -60,6 +61,33 @@ vtkSmartPointer<vtkPolyData> part(vtkPolyData* cut, const std::vector<bool>& sol
     return facets->GetOutput();
 }
 
+/// As `section`; with liquid bodies in parts that do not share points, so that the pressure of each is its own.
+vtkSmartPointer<vtkPolyData> parted_section(vtkUnstructuredGrid* grid, double y) {
+    if (!grid->GetPointData()->HasArray("pressure_within")) return section(grid, y);
+    vtkDataArray* region = grid->GetCellData()->GetArray("region");
+    vtkNew<vtkAppendPolyData> parts;
+    for (const bool inside : {false, true}) {
+        vtkNew<vtkIdList> kept;
+        for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+            if ((region->GetTuple1(cell) > 0) == inside) kept->InsertNextId(cell);
+        vtkNew<vtkExtractCells> cells;
+        cells->SetInputData(grid);
+        cells->SetCellList(kept);
+        cells->Update();
+        vtkSmartPointer<vtkPolyData> cut = section(cells->GetOutput(), y);
+        if (inside) {
+            vtkNew<vtkDoubleArray> within;
+            within->DeepCopy(cut->GetPointData()->GetArray("pressure_within"));
+            within->SetName("pressure");
+            cut->GetPointData()->RemoveArray("pressure");
+            cut->GetPointData()->AddArray(within);
+        }
+        parts->AddInputData(cut);
+    }
+    parts->Update();
+    return parts->GetOutput();
+}
+
 /// Nothing if it does not flow.
 std::vector<FlowFrame> read_flow_frames(const std::filesystem::path& dir) {
     constexpr std::size_t count = 4;
@@ -75,7 +103,7 @@ std::vector<FlowFrame> read_flow_frames(const std::filesystem::path& dir) {
         if (std::ranges::all_of(velocity->values, [](const Vec3& u) { return squared_norm(u) == 0; }))
             continue;
         f.solid = solid_regions(f.frame.mesh, pressure->values);
-        f.whole = section(f.run.grid, f.run.centre.y);
+        f.whole = parted_section(f.run.grid, f.run.centre.y);
         f.flowing = part(f.whole, f.solid, false);
         f.bodies = part(f.whole, f.solid, true);
         frames.push_back(std::move(f));
