@@ -98,7 +98,7 @@ inline constexpr double most_points_per_cell = 10;
 inline constexpr int lasting_rings = 2;
 
 // --- Budgets, in what is handled. Smaller: bad cells are given up. Larger: longer until a hopeless mesh is refused
-/// in which a cell found stuck is tried again as others have changed. Chosen.
+/// rounds in which a cell found stuck is tried again as others have changed. Chosen.
 inline constexpr int most_rounds = 3;
 /// cells for which an operator is sought, and splits, for a single bad one; splits for each further one: more vertices only
 /// make more bad cells. Chosen.

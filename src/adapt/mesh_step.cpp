@@ -45,15 +45,11 @@ std::vector<Tet> cells_at_inner_shells(const Mesh& mesh, const Domain& domain) {
 /// Of the cells that are new, and of those with a vertex that was moved.
 double worst_aspect_ratio_of(const Mesh& mesh, const Changes& changes) {
     double worst = 0;
-    const auto look_at = [&](Tet t) {
-        if (alive(mesh, t)) worst = std::max(worst, aspect_ratio(mesh, t));
-    };
-    for (Tet t : changes.cells) look_at(t);
-    if (changes.vertices.empty()) return worst;
-    Array<Vertex, char> is_changed(mesh.position.size(), 0);
-    for (Vertex v : changes.vertices) is_changed[v] = 1;
-    for (Tet t : mesh.tets.indices())
-        if (alive(mesh, t) && std::ranges::any_of(mesh.tets[t], [&](Vertex v) { return is_changed[v] != 0; })) look_at(t);
+    const auto look_at = [&](Tet t) { worst = std::max(worst, aspect_ratio(mesh, t)); };
+    for (Tet t : changes.cells)
+        if (alive(mesh, t)) look_at(t);
+    for (Vertex v : changes.vertices)
+        if (alive(mesh, v)) std::ranges::for_each(ball(mesh, v), look_at);
     return worst;
 }
 

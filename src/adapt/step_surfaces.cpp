@@ -51,7 +51,7 @@ void MeshStep::find_uneven() {
     is_uneven_.assign(domain_.bodies.size(), 0);
     std::vector<std::size_t> rigid;
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body)
-        if (const Body& it = domain_.bodies[body]; !it.deformation && !it.layer && !it.shape.surface) rigid.push_back(body);
+        if (const Body& of = domain_.bodies[body]; !of.deformation && !of.layer && !of.shape.surface) rigid.push_back(body);
     const Snapshot at = snapshot_at(time_);
     for (const BodySurface& surface : body_surfaces(reference_, rigid)) {
         const double short_edge = clearly * surface_size(at, surface.body);
@@ -65,9 +65,9 @@ std::vector<BodySurface> MeshStep::surfaces_to_adapt(const Snapshot& at_time) {
     std::vector<std::size_t> bodies;
     const std::vector<char> in_gaps = at_time.narrow ? are_in_gaps(at_time) : std::vector<char>(domain_.bodies.size(), 0);
     for (std::size_t body = 0; body < domain_.bodies.size(); ++body) {
-        const Body& it = domain_.bodies[body];
+        const Body& of = domain_.bodies[body];
         const bool uneven = is_uneven_[body] != 0 || in_gaps[body] != 0 || has_local_size(at_time, body);
-        if (!it.layer && (it.deformation || uneven)) bodies.push_back(body);
+        if (!of.layer && (of.deformation || uneven)) bodies.push_back(body);
     }
     auto surfaces = body_surfaces(current_, bodies);
     std::erase_if(surfaces, [&](const BodySurface& surface) {

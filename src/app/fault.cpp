@@ -45,11 +45,17 @@ std::string fault_of_crossing(const Mesh& mesh) {
                        place_of(mesh, found->b.tet));
 }
 
+std::string named(const Mesh& mesh, Tet t) { return fmt::format("cell {} at {}", t.value, place_of(mesh, t)); }
+std::string named(const Mesh& mesh, const Prism& prism) {
+    return fmt::format("prism {} on triangle {} of layer {} at {}", prism.k, prism.triangle, prism.layer.value,
+                       place(prism_corners(mesh, prism)[0]));
+}
+
 std::string fault_of_buried(const Mesh& mesh) {
     const auto found = find_buried(mesh);
     if (!found) return {};
-    return fmt::format("cell {} at {} lies within cell {} at {}", found->cell.value, place_of(mesh, found->cell),
-                       found->within.value, place_of(mesh, found->within));
+    return fmt::format("cell {} at {} lies within {}", found->cell.value, place_of(mesh, found->cell),
+                       std::visit([&](auto within) { return named(mesh, within); }, found->within));
 }
 
 }  // namespace

@@ -17,6 +17,9 @@
 
 namespace kropla {
 
+namespace {
+
+/// Are all the points in the box, or on its faces?
 bool is_in(const Bounds& box, const Corners& triangle) {
     return std::ranges::all_of(triangle, [&](const Vec3& x) {
         for (int axis = 0; axis < 3; ++axis)
@@ -24,8 +27,6 @@ bool is_in(const Bounds& box, const Corners& triangle) {
         return true;
     });
 }
-
-namespace {
 
 /// [of the box's width] points nearer to a plane are put on it.
 constexpr double on_plane = 1e-9;
@@ -142,16 +143,16 @@ std::vector<std::array<int, 2>> lines_of(const Triangles& of, const Bounds& box)
     return lines;
 }
 
-/// Those in the box, and the points that they have.
-Triangles part_in(const Triangles& all, const Bounds& box) {
-    Triangles part;
-    std::vector<int> number(all.points.size(), -1);
-    for (const Triangle& t : all.triangles) {
-        const auto place = [&](std::size_t i) { return all.points[as_size(t[i])]; };
+}  // namespace
+
+PartInBox part_in(const Bounds& box, std::span<const Vec3> points, std::span<const std::array<int, 3>> triangles) {
+    PartInBox part{{}, {}, std::vector<int>(points.size(), -1)};
+    for (const Triangle& t : triangles) {
+        const auto place = [&](std::size_t i) { return points[as_size(t[i])]; };
         if (!is_in(box, {place(0), place(1), place(2)})) continue;
         Triangle& kept = part.triangles.emplace_back();
         for (std::size_t i = 0; i < 3; ++i) {
-            int& n = number[as_size(t[i])];
+            int& n = part.number[as_size(t[i])];
             if (n < 0) {
                 n = static_cast<int>(part.points.size());
                 part.points.push_back(place(i));
@@ -161,8 +162,6 @@ Triangles part_in(const Triangles& all, const Bounds& box) {
     }
     return part;
 }
-
-}  // namespace
 
 Shape cut_by(const Box& box, const Shape& shape) {
     const Bounds within{box.min, box.max};
@@ -181,7 +180,7 @@ Shape cut_by(const Box& box, const Shape& shape) {
     }
     if (!is_cut) return shape;
     refuse_triangles_in_faces(all, within);
-    Triangles part = part_in(all, within);
+    PartInBox part = part_in(within, all.points, all.triangles);
     if (part.triangles.empty()) throw DomainError("nothing of its surface is in the box");
     Shape cut = shape_of_facets(std::move(part.points), std::move(part.triangles), &within);
     const auto lines = lines_of(all, within);

@@ -3,6 +3,7 @@
 #include "domain/triangulated_surface.h"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace kropla {
@@ -15,7 +16,14 @@ struct CutSurface {
     Bounds box;
 };
 
-/// Are all the points in the box, or on its faces?
-[[nodiscard]] bool is_in(const Bounds& box, const Corners& triangle);
+/// Of a surface that does not pass the planes of a box's faces what is in the box, or on its faces: these triangles, and the
+/// points that they have, in the order in which they come.
+struct PartInBox {
+    std::vector<Vec3> points;
+    std::vector<std::array<int, 3>> triangles;
+    std::vector<int> number;  // in it, of each point of the surface; -1: it is not there
+};
+[[nodiscard]] PartInBox part_in(const Bounds& box, std::span<const Vec3> points,
+                                std::span<const std::array<int, 3>> triangles);
 
 }  // namespace kropla

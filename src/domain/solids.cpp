@@ -74,15 +74,15 @@ Shape cylinder(const Box& box, const Vec3& from, const Vec3& to, double radius) 
     const int rings = 1 + static_cast<int>(std::ceil(distance(start, end) / (ring_spacing * turn * radius)));
     std::vector<Vec3> points = {start, end};
     std::vector<std::array<int, 3>> triangles;
-    const auto at = [](int ring, int i) { return 2 + ring * sides + i % sides; };
+    const auto number = [](int ring, int i) { return 2 + ring * sides + i % sides; };
     for (int ring = 0; ring < rings; ++ring)
         for (int i = 0; i < sides; ++i) {
             const Vec3 out = outer * (std::cos(i * turn) * u + std::sin(i * turn) * v);
             points.push_back(start + static_cast<double>(ring) / (rings - 1) * (end - start) + out);
-            if (ring == 0) triangles.push_back({0, at(0, i + 1), at(0, i)});
-            else triangles.insert(triangles.end(), {{at(ring - 1, i), at(ring - 1, i + 1), at(ring, i)},
-                                                    {at(ring - 1, i + 1), at(ring, i + 1), at(ring, i)}});
-            if (ring == rings - 1) triangles.push_back({1, at(ring, i), at(ring, i + 1)});
+            if (ring == 0) triangles.push_back({0, number(0, i + 1), number(0, i)});
+            else triangles.insert(triangles.end(), {{number(ring - 1, i), number(ring - 1, i + 1), number(ring, i)},
+                                                    {number(ring - 1, i + 1), number(ring, i + 1), number(ring, i)}});
+            if (ring == rings - 1) triangles.push_back({1, number(ring, i), number(ring, i + 1)});
         }
     Shape shape = cut_by(box, shape_within(std::move(points), triangles));
     shape.resolved = radius;

@@ -8,8 +8,8 @@ namespace kropla {
 namespace {
 
 Corners corners_of(std::span<const Vec3> points, const std::array<int, 3>& triangle) {
-    const auto at = [&](std::size_t i) { return points[static_cast<std::size_t>(triangle[i])]; };
-    return {at(0), at(1), at(2)};
+    const auto corner = [&](std::size_t i) { return points[static_cast<std::size_t>(triangle[i])]; };
+    return {corner(0), corner(1), corner(2)};
 }
 
 std::vector<Extent> extents(std::span<const Vec3> points, std::span<const std::array<int, 3>> triangles) {

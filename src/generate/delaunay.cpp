@@ -22,7 +22,7 @@ constexpr uint32_t points_at_once = 4096;  // between two looks at the watch: so
 /// Brings four points that are not coplanar, positively oriented, to the front of the order, the others
 /// unchanged behind them. Returns false if there are none.
 bool bring_tet_to_front(std::span<const Vec3> points, std::vector<Vertex>& order) {
-    const auto at = [&](std::size_t i) { return points[static_cast<std::size_t>(order[i].value)]; };
+    const auto place = [&](std::size_t i) { return points[static_cast<std::size_t>(order[i].value)]; };
     const auto collinear = [](const Vec3& a, const Vec3& b, const Vec3& c) {  // in all three projections
         return orient3d({a.x, a.y, 0}, {b.x, b.y, 0}, {c.x, c.y, 0}, {a.x, a.y, 1}) == 0 &&
                orient3d({a.y, a.z, 0}, {b.y, b.z, 0}, {c.y, c.z, 0}, {a.y, a.z, 1}) == 0 &&
@@ -35,14 +35,14 @@ bool bring_tet_to_front(std::span<const Vec3> points, std::vector<Vertex>& order
     };
     if (order.size() < 4) return false;
     std::size_t third = 2;
-    while (third < order.size() && collinear(at(0), at(1), at(third))) ++third;
+    while (third < order.size() && collinear(place(0), place(1), place(third))) ++third;
     if (third == order.size()) return false;
     bring(third, 2);
     std::size_t fourth = 3;
-    while (fourth < order.size() && orient3d(at(0), at(1), at(2), at(fourth)) == 0) ++fourth;
+    while (fourth < order.size() && orient3d(place(0), place(1), place(2), place(fourth)) == 0) ++fourth;
     if (fourth == order.size()) return false;
     bring(fourth, 3);
-    if (orient3d(at(0), at(1), at(2), at(3)) < 0) std::swap(order[0], order[1]);
+    if (orient3d(place(0), place(1), place(2), place(3)) < 0) std::swap(order[0], order[1]);
     return true;
 }
 

@@ -34,8 +34,8 @@ uint32_t locate(const Kernel& k, const Vec3& p) {
         const Cell& c = k.cells[t];
         const auto beyond = [&](std::size_t corner) {
             const auto& o = others[corner];
-            const auto at = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[o[i]]].at; };
-            return side_of(p, at(0), at(1), at(2)) < 0;
+            const auto place = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[o[i]]].at; };
+            return side_of(p, place(0), place(1), place(2)) < 0;
         };
         std::size_t exit = 0;
         while (exit < 4 && (exit == entered || !beyond(exit))) ++exit;
@@ -54,15 +54,15 @@ uint32_t locate(const Kernel& k, const Vec3& p) {
 }
 
 [[gnu::noinline]] bool ghost_in_conflict(const Kernel& k, const Cell& c, const Site& p) {
-    const auto at = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[i]].at; };
-    const int side = side_of(at(0), at(1), at(2), p.at);
+    const auto place = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[i]].at; };
+    const int side = side_of(place(0), place(1), place(2), p.at);
     return side != 0 ? side > 0 : holds_exactly(k, k.cells[c.across[3] >> 2], p);
 }
 
 bool in_conflict(const Kernel& k, const Cell& c, const Site& p) {
     if (is_ghost(c)) return ghost_in_conflict(k, c, p);
-    const auto at = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[i]].at; };
-    const int s = filter::insphere(at(0), at(1), at(2), at(3), p.at);
+    const auto place = [&](std::size_t i) -> const Vec3& { return k.sites[c.vertex[i]].at; };
+    const int s = filter::insphere(place(0), place(1), place(2), place(3), p.at);
     return s != 0 ? s > 0 : holds_exactly(k, c, p);
 }
 

@@ -117,20 +117,20 @@ SpatialOrder hilbert_order(std::span<const Vec3> points) {
     result.same_as.resize(points.size());
     if (points.empty()) return result;
     std::vector<Placed> placed = places(points);
-    const auto at = [&](const Placed& p) { return points[static_cast<std::size_t>(p.point.value)]; };
+    const auto point_of = [&](const Placed& p) { return points[static_cast<std::size_t>(p.point.value)]; };
     sort_by_place(placed);
     for (auto run = placed.begin(); run != placed.end();) {  // equal points have one place, maybe with others
         const auto elsewhere = [place = run->place](const Placed& p) { return p.place != place; };
         const auto end = std::find_if(run, placed.end(), elsewhere);
         std::sort(run, end, [&](const Placed& a, const Placed& b) {
-            const Vec3 p = at(a), q = at(b);
+            const Vec3 p = point_of(a), q = point_of(b);
             return std::tie(p.x, p.y, p.z, a.point) < std::tie(q.x, q.y, q.z, b.point);
         });
         run = end;
     }
     result.order.reserve(points.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
-        const bool seen = i > 0 && at(placed[i]) == at(placed[i - 1]);
+        const bool seen = i > 0 && point_of(placed[i]) == point_of(placed[i - 1]);
         if (seen) result.same_as[placed[i].point] = result.order.back();
         else result.order.push_back(placed[i].point);
     }

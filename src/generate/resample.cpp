@@ -198,28 +198,15 @@ Sheet whole_sheet(const Shape& shape) {
     return sheet;
 }
 
-/// Of the whole surface what is in the box.
-Surface part_in_box(const Surface& whole, const Bounds& box) {
-    Surface part;
-    std::vector<int> number(whole.points.size(), -1);
-    for (const auto& triangle : whole.triangles) {
-        const auto place = [&](std::size_t i) { return whole.points[as_size(triangle[i])]; };
-        if (!is_in(box, {place(0), place(1), place(2)})) continue;
-        auto& kept = part.triangles.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i) {
-            int& n = number[as_size(triangle[i])];
-            if (n < 0) {
-                n = static_cast<int>(part.points.size());
-                part.points.push_back(place(i));
-            }
-            kept[i] = n;
-        }
-    }
+/// Of the whole surface what is in the box, with its creases.
+Surface surface_in(const Bounds& box, const Surface& whole) {
+    PartInBox part = part_in(box, whole.points, whole.triangles);
+    Surface surface{std::move(part.points), std::move(part.triangles)};
     for (const auto& [a, b] : whole.creases) {
-        const int p = number[as_size(a)], q = number[as_size(b)];
-        if (p >= 0 && q >= 0) part.creases.push_back({std::min(p, q), std::max(p, q)});
+        const int p = part.number[as_size(a)], q = part.number[as_size(b)];
+        if (p >= 0 && q >= 0) surface.creases.push_back({std::min(p, q), std::max(p, q)});
     }
-    return part;
+    return surface;
 }
 
 constexpr int none = -1;
@@ -272,7 +259,7 @@ Surface resampled(const Shape& shape, const SurfaceSize& asked, const Watch* wat
     relax(sheet, original, size, watch);
     Surface surface = surface_of(sheet);
     put_in_place(surface, shape);
-    return shape.cut ? part_in_box(surface, shape.cut->box) : surface;
+    return shape.cut ? surface_in(shape.cut->box, surface) : surface;
 }
 
 Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {

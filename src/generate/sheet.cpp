@@ -73,9 +73,9 @@ Vec3 normal_area(const Sheet& sheet, Half h) {
 }
 
 Vec3 normal_area(const Sheet& sheet, Half h, Vertex moved, const Vec3& to) {
-    const auto at = [&](Vertex v) { return v == moved ? to : sheet.place[v]; };
-    const Vec3 a = at(sheet.origin[h]);
-    return cross(at(sheet.target(h)) - a, at(sheet.apex(h)) - a);
+    const auto place = [&](Vertex v) { return v == moved ? to : sheet.place[v]; };
+    const Vec3 a = place(sheet.origin[h]);
+    return cross(place(sheet.target(h)) - a, place(sheet.apex(h)) - a);
 }
 
 Vertex split_edge(Sheet& sheet, Half h, const Vec3& place) {
@@ -108,9 +108,9 @@ bool may_flip(const Sheet& sheet, Half h) {
     if (sheet.crease[h] != 0) return false;
     const Half t = sheet.twin[h];
     const Vertex b = sheet.origin[h], c = sheet.origin[t], a = sheet.apex(h), d = sheet.apex(t);
-    const auto at = [&](Vertex v) { return sheet.place[v]; };
-    const Vec3 out = normal_area(sheet, h) + normal_area(sheet, t);
-    if (dot(cross(at(b) - at(a), at(d) - at(a)), out) <= 0 || dot(cross(at(d) - at(a), at(c) - at(a)), out) <= 0) return false;
+    const Vec3 out = normal_area(sheet, h) + normal_area(sheet, t), from = sheet.place[a];
+    const Vec3 to_b = sheet.place[b] - from, to_c = sheet.place[c] - from, to_d = sheet.place[d] - from;
+    if (dot(cross(to_b, to_d), out) <= 0 || dot(cross(to_d, to_c), out) <= 0) return false;
     bool joined = false;
     for_each_leaving(sheet, a, [&](Half from_a) { joined = joined || sheet.target(from_a) == d; });
     return !joined;

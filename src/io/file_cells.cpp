@@ -56,16 +56,16 @@ void keep_values(std::vector<Field>& fields, const Array<Vertex, Vertex>& old_ve
 
 std::size_t turn_round(FileCells& cells) {
     std::size_t turned = 0;
-    const auto at = [&](Vertex v) { return cells.position[v]; };
+    const auto place = [&](Vertex v) { return cells.position[v]; };
     for (auto& t : cells.tets) {
-        if (orient3d(at(t[0]), at(t[1]), at(t[2]), at(t[3])) >= 0) continue;
+        if (orient3d(place(t[0]), place(t[1]), place(t[2]), place(t[3])) >= 0) continue;
         std::swap(t[2], t[3]);
         ++turned;
     }
     for (LoosePrism& prism : cells.prisms) {
         auto& v = prism.vertices;
         std::array<Vec3, 6> corners;
-        std::ranges::transform(v, corners.begin(), at);
+        std::ranges::transform(v, corners.begin(), place);
         if (prism_volume(corners) >= 0) continue;
         std::swap(v[1], v[2]);
         std::swap(v[4], v[5]);

@@ -146,8 +146,8 @@ Ends ends_of(const std::vector<PrismLayer>& layers, bool walls) {
     for (std::size_t l = 0; l < layers.size(); ++l)
         for (const auto& [a, b, c] : layers[l].triangles) {
             const int k = walls ? 0 : layers[l].count;
-            const auto at = [&](int column) { return column_vertex(layers[l], column, k); };
-            ends.emplace(sorted({at(a), at(b), at(c)}), Layer(l));
+            const auto vertex = [&](int column) { return column_vertex(layers[l], column, k); };
+            ends.emplace(sorted({vertex(a), vertex(b), vertex(c)}), Layer(l));
         }
     return ends;
 }

@@ -154,8 +154,8 @@ private:
         const Vec3 size = box.max - box.min;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const auto place = [&](std::size_t item) { return boxes_[item].min[axis] + boxes_[item].max[axis]; };
-        const auto at = [&](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
-        std::nth_element(at(begin), at(middle), at(end), [&](std::size_t a, std::size_t b) {
+        const auto nth = [&](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(nth(begin), nth(middle), nth(end), [&](std::size_t a, std::size_t b) {
             return std::pair(place(a), a) < std::pair(place(b), b);
         });
     }

@@ -154,13 +154,64 @@ std::vector<Facet> one_of_each_surface(const Mesh& mesh, std::span<const Facet> 
     return firsts;
 }
 
-bool is_within(const Mesh& mesh, const Vec3& x, Tet t) {
-    for (int corner = 0; corner < 4; ++corner) {
-        const auto [a, b, c] = facet_vertices(mesh, {t, corner});
-        if (orient3d(mesh.position[a], mesh.position[b], mesh.position[c], x) >= 0) return false;
+using Corners = std::array<Vertex, 4>;
+
+/// Or on a facet: with any corner at `x` the tet is flat, or oriented as it is.
+bool is_within(const Mesh& mesh, const Vec3& x, const Corners& tet) {
+    std::array<Vec3, 4> place;
+    for (std::size_t i = 0; i < 4; ++i) place[i] = mesh.position[tet[i]];
+    const auto orientation = [](const std::array<Vec3, 4>& p) { return orient3d(p[0], p[1], p[2], p[3]); };
+    const int own = orientation(place);
+    for (std::size_t i = 0; i < 4 && own != 0; ++i) {
+        auto moved = place;
+        moved[i] = x;
+        if (orientation(moved) * own < 0) return false;
     }
-    return true;
+    return own != 0;
 }
+
+/// The prism as three tets. Their diagonals rise towards the column of the higher number, so that those of neighbours meet.
+std::array<Corners, 3> parts_of(const Mesh& mesh, const Prism& prism) {
+    const PrismLayer& layer = layer_of(mesh, prism.layer);
+    auto columns = layer.triangles[as_size(prism.triangle)];
+    std::ranges::sort(columns);
+    std::array<Vertex, 3> low, high;
+    for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = column_vertex(layer, columns[i], prism.k);
+        high[i] = column_vertex(layer, columns[i], prism.k + 1);
+    }
+    return {Corners{low[0], low[1], low[2], high[2]}, {low[0], low[1], high[1], high[2]}, {low[0], high[0], high[1], high[2]}};
+}
+
+/// A cell at each surface, to be asked for by the place of its middle.
+class CellsAtSurfaces {
+public:
+    explicit CellsAtSurfaces(const Mesh& mesh)
+        : mesh_(mesh), facets_(one_of_each_surface(mesh, boundary_facets(mesh))), tree_(middles(mesh, facets_)) {}
+
+    /// One other than `self` whose middle is in the tet; none if there is none.
+    [[nodiscard]] Tet any_in(const Corners& tet, Tet self) const {
+        Tet found;
+        tree_.any(extent_of(mesh_, tet), [&](std::size_t i) {
+            const Tet cell = facets_[i].tet;
+            if (cell == self || !is_within(mesh_, centroid(mesh_, cell), tet)) return false;
+            found = cell;
+            return true;
+        });
+        return found;
+    }
+
+private:
+    static std::vector<Extent> middles(const Mesh& mesh, std::span<const Facet> facets) {
+        std::vector<Extent> points(facets.size());
+        for (std::size_t i = 0; i < facets.size(); ++i) points[i].take_in(centroid(mesh, facets[i].tet));
+        return points;
+    }
+
+    const Mesh& mesh_;
+    std::vector<Facet> facets_;
+    BoxTree tree_;
+};
 
 }  // namespace
 
@@ -184,26 +235,14 @@ std::optional<Crossing> find_crossing(const Mesh& mesh) {
 }
 
 std::optional<Buried> find_buried(const Mesh& mesh) {
-    std::vector<Tet> cells;
-    std::vector<Vec3> middles;
-    std::vector<Extent> points;
-    for (const Facet f : one_of_each_surface(mesh, boundary_facets(mesh))) {
-        cells.push_back(f.tet);
-        middles.push_back(centroid(mesh, f.tet));
-        points.push_back({middles.back(), middles.back()});
-    }
-    const BoxTree tree(points);
-    std::optional<Buried> found;
-    for (const Tet t : mesh.tets.indices()) {
-        if (!alive(mesh, t)) continue;
-        const bool any = tree.any(extent_of(mesh, mesh.tets[t]), [&](std::size_t i) {
-            if (cells[i] == t || !is_within(mesh, middles[i], t)) return false;
-            found = {cells[i], t};
-            return true;
-        });
-        if (any) break;
-    }
-    return found;
+    const CellsAtSurfaces at_surfaces(mesh);
+    for (const Tet t : mesh.tets.indices())
+        if (alive(mesh, t))
+            if (const Tet cell = at_surfaces.any_in(mesh.tets[t], t); cell.exists()) return Buried{cell, t};
+    for (const Prism& prism : all_prisms(mesh))
+        for (const Corners& part : parts_of(mesh, prism))
+            if (const Tet cell = at_surfaces.any_in(part, Tet{}); cell.exists()) return Buried{cell, prism};
+    return std::nullopt;
 }
 
 }  // namespace kropla

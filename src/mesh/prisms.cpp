@@ -36,9 +36,9 @@ std::vector<Prism> all_prisms(const Mesh& mesh) {
 std::array<Vertex, 6> prism_vertices(const Mesh& mesh, const Prism& prism) {
     const PrismLayer& layer = layer_of(mesh, prism.layer);
     const auto [a, b, c] = layer.triangles[as_size(prism.triangle)];
-    const auto at = [&](int column, int k) { return column_vertex(layer, column, k); };
-    return {at(a, prism.k),     at(b, prism.k),     at(c, prism.k),
-            at(a, prism.k + 1), at(b, prism.k + 1), at(c, prism.k + 1)};
+    const auto corner = [&](int column, int k) { return column_vertex(layer, column, k); };
+    return {corner(a, prism.k),     corner(b, prism.k),     corner(c, prism.k),
+            corner(a, prism.k + 1), corner(b, prism.k + 1), corner(c, prism.k + 1)};
 }
 
 std::array<Vec3, 6> prism_corners(const Mesh& mesh, const Prism& prism) {

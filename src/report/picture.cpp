@@ -138,13 +138,13 @@ void add_arrow(const Drawing& drawing, const Arrow& arrow, std::string& shafts, 
     const double length = arrow.length * drawing.scale, head = std::min(most_head, 0.6 * length);
     if (length < least_length) return;
     const Point2 middle = on_drawing(drawing, arrow.place), along = {arrow.direction.x, -arrow.direction.y};
-    const auto at = [&](double forth, double aside) {
+    const auto shifted = [&](double forth, double aside) {
         return Point2{middle.x + forth * along.x - aside * along.y,
                       middle.y + forth * along.y + aside * along.x};
     };
-    shafts += line_path(std::array{at(-length / 2, 0), at(length / 2 - head / 2, 0)});
+    shafts += line_path(std::array{shifted(-length / 2, 0), shifted(length / 2 - head / 2, 0)});
     heads += polygon_path(
-        std::array{at(length / 2, 0), at(length / 2 - head, 0.4 * head), at(length / 2 - head, -0.4 * head)});
+        std::array{shifted(length / 2, 0), shifted(length / 2 - head, 0.4 * head), shifted(length / 2 - head, -0.4 * head)});
 }
 
 }  // namespace

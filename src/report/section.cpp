@@ -94,15 +94,15 @@ struct Lines {
 
 void add_lines(Lines& lines, std::size_t facet, const std::array<double, 6>& heights) {
     const std::size_t size = facet < 2 ? 3 : 4;
-    const auto at = [&](std::size_t i) { return heights[facet_corners[facet][i % size]]; };
+    const auto height = [&](std::size_t i) { return heights[facet_corners[facet][i % size]]; };
     std::array<std::size_t, 4> crossed{};
     std::size_t count = 0;
     for (std::size_t i = 0; i < size; ++i)
-        if ((at(i) < 0) != (at(i + 1) < 0)) crossed[count++] = facet_edges[facet][i];
+        if ((height(i) < 0) != (height(i + 1) < 0)) crossed[count++] = facet_edges[facet][i];
     if (count == 2) lines.join(crossed[0], crossed[1]);
     if (count < 4) return;
-    const double saddle = at(0) * at(2) - at(1) * at(3);  // above 0: corners 0 and 2 belong together
-    const bool first_apart = saddle < 0 || (saddle == 0 && at(0) < 0);
+    const double saddle = height(0) * height(2) - height(1) * height(3);  // above 0: corners 0 and 2 belong together
+    const bool first_apart = saddle < 0 || (saddle == 0 && height(0) < 0);
     lines.join(crossed[0], crossed[first_apart ? 3 : 1]);
     lines.join(crossed[2], crossed[first_apart ? 1 : 3]);
 }

@@ -19,9 +19,9 @@ namespace {
 
 constexpr int evenings = 3;  // of the sizes, each over the vertices beside: by three edges
 
-std::vector<Vertex> vertices_of(const Interface& it) {
+std::vector<Vertex> vertices_of(const Interface& interface) {
     std::vector<Vertex> vertices;
-    for (const auto& triangle : it.triangles) vertices.insert(vertices.end(), triangle.begin(), triangle.end());
+    for (const auto& triangle : interface.triangles) vertices.insert(vertices.end(), triangle.begin(), triangle.end());
     std::ranges::sort(vertices);
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
@@ -40,22 +40,22 @@ bool is_fan(const SurfaceStar& star) {
     return seen == star.sides.size() && at == star.sides.front()[0];
 }
 
-bool is_apart(const Mesh& mesh, const Interface& it) {
-    return std::ranges::all_of(vertices_of(it), [&](Vertex v) {
+bool is_apart(const Mesh& mesh, const Interface& interface) {
+    return std::ranges::all_of(vertices_of(interface), [&](Vertex v) {
         const std::vector<Tet> cells = ball(mesh, v);
-        const auto is_of_two = [&](Tet t) { return mesh.region[t] == it.inner || mesh.region[t] == it.outer; };
+        const auto is_of_two = [&](Tet t) { return mesh.region[t] == interface.inner || mesh.region[t] == interface.outer; };
         return std::ranges::all_of(cells, is_of_two) && constraint(mesh, v, cells).patches == 0 &&
-               is_fan(surface_star(mesh, v, it.inner));
+               is_fan(surface_star(mesh, v, interface.inner));
     });
 }
 
 /// The mean length of the edges at each vertex, evened.
-Array<Vertex, double> sizes_of(const Mesh& mesh, const Interface& it) {
+Array<Vertex, double> sizes_of(const Mesh& mesh, const Interface& interface) {
     Array<Vertex, double> size(mesh.position.size(), 1);
-    const std::vector<Vertex> vertices = vertices_of(it);
+    const std::vector<Vertex> vertices = vertices_of(interface);
     std::vector<std::vector<Vertex>> rings;
     for (const Vertex v : vertices) {
-        const auto& around = rings.emplace_back(ring(surface_star(mesh, v, it.inner)));
+        const auto& around = rings.emplace_back(ring(surface_star(mesh, v, interface.inner)));
         double sum = 0;
         for (const Vertex w : around) sum += distance(mesh.position[v], mesh.position[w]);
         size[v] = sum / static_cast<double>(around.size());
@@ -86,31 +86,31 @@ std::vector<Interface> interfaces(const Mesh& mesh) {
         for (int corner = 0; corner < 4; ++corner) {
             const Tet n = mesh.neighbour[t][as_size(corner)];
             if (!n.exists() || !(mesh.region[n] < mesh.region[t])) continue;
-            Interface& it = found[{mesh.region[t], mesh.region[n]}];
-            it.inner = mesh.region[t];
-            it.outer = mesh.region[n];
-            it.triangles.push_back(facet_vertices(mesh, {t, corner}));
+            Interface& interface = found[{mesh.region[t], mesh.region[n]}];
+            interface.inner = mesh.region[t];
+            interface.outer = mesh.region[n];
+            interface.triangles.push_back(facet_vertices(mesh, {t, corner}));
         }
     std::vector<Interface> all;
-    for (auto& [regions, it] : found) {
-        it.is_apart = is_apart(mesh, it);
-        all.push_back(std::move(it));
+    for (auto& [regions, interface] : found) {
+        interface.is_apart = is_apart(mesh, interface);
+        all.push_back(std::move(interface));
     }
     return all;
 }
 
 Changes remesh_interfaces(Mesh& mesh, std::span<const Interface> interfaces, const AdaptOptions& options) {
     Changes changes;
-    for (const Interface& it : interfaces) {
-        auto size = sizes_of(mesh, it);
-        const BodySurface surface{as_size(it.inner.value) - 1, vertices_of(it), it.triangles};
+    for (const Interface& interface : interfaces) {
+        auto size = sizes_of(mesh, interface);
+        const BodySurface surface{as_size(interface.inner.value) - 1, vertices_of(interface), interface.triangles};
         changes += adapt_surface(mesh, surface, size, true, options);
     }
     changes += improve_mesh(mesh, options);
     for (int round = 0; round < most_rounds; ++round) {
         const std::vector<Tet> bad = bad_cells(mesh, options.good_enough);
         Changes more;
-        for (const Interface& it : interfaces) more += improve_surface(mesh, bad, it.inner, options);
+        for (const Interface& interface : interfaces) more += improve_surface(mesh, bad, interface.inner, options);
         if (more.vertices.empty()) break;
         changes += more;
         changes += improve_mesh(mesh, options);
@@ -120,11 +120,11 @@ Changes remesh_interfaces(Mesh& mesh, std::span<const Interface> interfaces, con
 
 TriangleSummary summarise_triangles(const Mesh& mesh, std::span<const Interface> interfaces) {
     TriangleSummary summary;
-    for (const Interface& it : interfaces)
-        for (const auto& triangle : it.triangles)
+    for (const Interface& interface : interfaces)
+        for (const auto& triangle : interface.triangles)
             for (std::size_t i = 0; i < 3; ++i) {
-                const auto at = [&](std::size_t k) { return mesh.position[triangle[k % 3]]; };
-                const Vec3 u = at(i + 1) - at(i), v = at(i + 2) - at(i);
+                const auto corner = [&](std::size_t k) { return mesh.position[triangle[k % 3]]; };
+                const Vec3 u = corner(i + 1) - corner(i), v = corner(i + 2) - corner(i);
                 const double angle = std::atan2(norm(cross(u, v)), dot(u, v)) * 180 / std::numbers::pi;
                 summary.least_angle = summary.triangles + i == 0 ? angle : std::min(summary.least_angle, angle);
                 summary.greatest_angle = std::max(summary.greatest_angle, angle);

@@ -133,7 +133,27 @@ TEST(Buried, APartWithinAnotherIsFound) {
     const auto found = find_buried(mesh);
     ASSERT_TRUE(found);
     EXPECT_GE(found->cell.value, 48);
-    EXPECT_LT(found->within.value, 48);
+    EXPECT_LT(std::get<Tet>(found->within).value, 48);
+}
+
+TEST(Buried, APartWithinAPrismIsFound) {
+    const Mesh layered = layered_cube(2);
+    const std::vector<Prism> prisms = all_prisms(layered);
+    ASSERT_GE(prisms.size(), 24u);
+    for (const Prism& prism : prisms) {
+        Vec3 middle;
+        for (const Vec3& x : prism_corners(layered, prism)) middle += x / 6;
+        Mesh mesh = beside(layered, cube_of_tets(1), middle, 1e-3);
+        for (const Tet t : layered.tets.indices()) mesh.patch[t] = layered.patch[t];
+        add_layer(mesh, layered.layers[0]);
+        EXPECT_EQ(verify(mesh), "");
+        EXPECT_FALSE(find_crossing(mesh));
+        const auto found = find_buried(mesh);
+        ASSERT_TRUE(found);
+        EXPECT_GE(as_size(found->cell.value), layered.tets.size());
+        const Prism within = std::get<Prism>(found->within);
+        EXPECT_EQ(std::pair(within.triangle, within.k), std::pair(prism.triangle, prism.k));
+    }
 }
 
 /// Whether a plane parts the tets: one of their facets, or across an edge of each [Gottschalk et al. 1996].
