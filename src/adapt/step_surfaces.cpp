@@ -77,8 +77,8 @@ void MeshStep::adapt_surfaces(const Snapshot& at_time, const AdaptOptions& optio
     if (adapted_.empty()) return;
     Changes of_surfaces;
     for (const BodySurface& surface : adapted_) {
-        const bool deforms = bool(domain_.bodies[surface.body].deformation);
-        of_surfaces += adapt_surface(current_, surface, motion_.size, deforms, options);
+        const Body& body = domain_.bodies[surface.body];
+        of_surfaces += adapt_surface(current_, surface, motion_.size, bool(body.deformation), options, body.pinned);
     }
     auto cells = cells_at(current_, of_surfaces.vertices);
     cells.insert(cells.end(), of_surfaces.cells.begin(), of_surfaces.cells.end());
@@ -99,7 +99,7 @@ void MeshStep::improve_surfaces(std::vector<Tet> cells, const Snapshot& at_time,
         if (cells.empty()) return;
         Changes more;
         for (const BodySurface& surface : adapted_)
-            more += improve_surface(current_, cells, region_of_body(surface.body), options);
+            more += improve_surface(current_, cells, region_of_body(surface.body), options, domain_.bodies[surface.body].pinned);
         if (more.vertices.empty()) return;
         const auto at_moved = cells_at(current_, more.vertices);
         more.cells.insert(more.cells.end(), at_moved.begin(), at_moved.end());

@@ -1,6 +1,7 @@
 #include "simulate/tension.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace kropla {
 namespace {
@@ -45,12 +46,26 @@ Vec3 solved(const std::array<Vec3, 3>& a, const Vec3& b) {
     return (b.x * yz + b.y * zx + b.z * xy) / dot(a[0], yz);
 }
 
-/// Makes forces have neither a sum nor a moment, by what a rigid motion does to masses as large as the shares.
-void take_off_all_together(const std::vector<Vec3>& place, const std::vector<double>& share, std::vector<Vec3>& force) {
+/// What of a vector is in directions that are 1, not 0.
+Vec3 within(const Vec3& free, const Vec3& vector) { return {free.x * vector.x, free.y * vector.y, free.z * vector.z}; }
+
+/// The spin that does this moment to an inertia about each axis about which a motion in the free directions may turn.
+Vec3 spin_of(const std::array<Vec3, 3>& inertia, const Vec3& moment, const Vec3& free) {
+    if (free == Vec3{1, 1, 1}) return solved(inertia, moment);
+    Vec3 spin;
+    for (int m = 0; m < 3; ++m)
+        if (free[(m + 1) % 3] * free[(m + 2) % 3] != 0) spin[m] = moment[m] / inertia[as_size(m)][m];
+    return spin;
+}
+
+/// Makes forces have neither a sum nor a moment, by what a rigid motion in the free directions does to masses as large as the
+/// shares.
+void take_off_all_together(const std::vector<Vec3>& place, const std::vector<double>& share, const Vec3& free,
+                           std::vector<Vec3>& force) {
     Vec3 sum, moment, middle;
     double mass = 0;
     for (std::size_t i = 0; i < place.size(); ++i) {
-        sum += force[i];
+        sum += within(free, force[i]);
         middle += share[i] * place[i];
         mass += share[i];
     }
@@ -58,15 +73,42 @@ void take_off_all_together(const std::vector<Vec3>& place, const std::vector<dou
     std::array<Vec3, 3> inertia = {};
     for (std::size_t i = 0; i < place.size(); ++i) {
         const Vec3 r = place[i] - middle;
-        moment += cross(r, force[i] - share[i] / mass * sum);
+        moment += cross(r, within(free, force[i]) - share[i] / mass * sum);
         for (int m = 0; m < 3; ++m) {
             inertia[static_cast<std::size_t>(m)] -= share[i] * r[m] * r;
             inertia[static_cast<std::size_t>(m)][m] += share[i] * squared_norm(r);
         }
     }
-    const Vec3 turning = solved(inertia, moment);
+    const Vec3 turning = spin_of(inertia, moment, free);
     for (std::size_t i = 0; i < place.size(); ++i)
         force[i] -= share[i] * (sum / mass + cross(turning, place[i] - middle));
+}
+
+/// Adds Young's force on a line that moves along its face; returns the energy of what of the face is wetted [J].
+double add_young(const LiquidSurface& surface, const ContactLine& line, const Array<Vertex, Vec3>& position,
+                 std::vector<Vec3>& young) {
+    double tension = 0, area = 0;
+    for (Vertex v : line.vertices) tension += surface.tension[place_of(surface.vertices, v)];
+    tension /= static_cast<double>(line.vertices.size());
+    for (const auto& corners : line.wetted) {
+        const Facet facet = facet_of(line.vertices, corners, position);
+        area += norm(facet.area);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (std::ranges::binary_search(line.vertices, corners[i])) {
+                const std::size_t at = place_of(surface.vertices, corners[i]);
+                young[at] += *line.cosine * surface.tension[at] * facet.area_gradient[i];
+            }
+    }
+    return -*line.cosine * tension * area;
+}
+
+/// The directions in which the surface may go as a whole: none across faces on which it ends, and none if it is pinned.
+Vec3 free_as_a_whole(const LiquidSurface& surface) {
+    Vec3 all{1, 1, 1};
+    for (const ContactLine& line : surface.lines)
+        if (!line.cosine) return {};
+    for (const Vec3& free : surface.free) all = within(all, free);
+    return all;
 }
 
 }  // namespace
@@ -83,6 +125,36 @@ std::size_t place_of(std::span<const Vertex> vertices, Vertex v) {
     return static_cast<std::size_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
 }
 
+std::array<ContactLine, 6> contact_lines(const Mesh& mesh, Region body, std::span<const Vertex> surface) {
+    std::array<ContactLine, 6> lines;
+    FaceFacets facets = facets_of_faces(mesh, living_cells(mesh, body));
+    for (std::size_t face = 0; face < lines.size(); ++face) {
+        std::ranges::set_intersection(vertices_of(facets[face]), surface, std::back_inserter(lines[face].vertices));
+        lines[face].face = face;
+        lines[face].wetted = std::move(facets[face]);
+    }
+    return lines;
+}
+
+std::vector<Vec3> free_directions(std::span<const Vertex> surface, const std::array<ContactLine, 6>& lines) {
+    std::vector<Vec3> free;
+    for (std::size_t face = 0; face < lines.size(); ++face) {
+        if (lines[face].vertices.empty()) continue;
+        if (free.empty()) free.assign(surface.size(), {1, 1, 1});
+        for (Vertex v : lines[face].vertices) free[place_of(surface, v)][static_cast<int>(face / 2)] = 0;
+    }
+    return free;
+}
+
+std::vector<Vec3> along_faces(std::vector<Vec3> normals, std::span<const Vec3> free) {
+    for (std::size_t i = 0; i < free.size(); ++i) {
+        if (free[i] == Vec3{1, 1, 1}) continue;
+        const Vec3 along = within(free[i], normals[i]);
+        normals[i] = norm(along) > 0 ? along / norm(along) : Vec3{};
+    }
+    return normals;
+}
+
 std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets, std::span<const Vertex> vertices,
                                   const Array<Vertex, Vec3>& position) {
     std::vector<Vec3> normal(vertices.size());
@@ -97,7 +169,7 @@ std::vector<Vec3> surface_normals(std::span<const std::array<Vertex, 3>> facets,
 SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex, Vec3>& position) {
     const std::size_t count = surface.vertices.size();
     SurfaceTension acts{std::vector<Vec3>(count), surface_normals(surface.facets, surface.vertices, position), {}, 0, 0};
-    std::vector<Vec3> pull(count), along(count);  // of the whole tension; of its gradient
+    std::vector<Vec3> pull(count), along(count), young(count);  // of the whole tension; of its gradient; of walls
     std::vector<double> share(count, 0);          // of the area
     for (const auto& corners : surface.facets) {
         const Facet facet = facet_of(surface.vertices, corners, position);
@@ -120,13 +192,19 @@ SurfaceTension surface_tension(const LiquidSurface& surface, const Array<Vertex,
         }
     }
     sum_up(acts.bonds);
+    for (const ContactLine& line : surface.lines)
+        if (line.cosine) acts.energy += add_young(surface, line, position, young);
+    const std::vector<Vec3> direction = along_faces(acts.normal, surface.free);
     std::vector<Vec3> place;
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3& n = acts.normal[i];
-        acts.force[i] = dot(pull[i], n) * n + along[i] - dot(along[i], n) * n;
+        const Vec3& n = direction[i];
+        const Vec3 free = surface.free.empty() ? Vec3{1, 1, 1} : surface.free[i];
+        const Vec3 slides = within(free, along[i]);
+        acts.force[i] = dot(pull[i] + young[i], n) * n + slides - dot(slides, n) * n + (pull[i] - within(free, pull[i])) - young[i];
         place.push_back(position[surface.vertices[i]]);
     }
-    take_off_all_together(place, share, acts.force);
+    take_off_all_together(place, share, free_as_a_whole(surface), acts.force);
+    for (std::size_t i = 0; i < count; ++i) acts.force[i] += young[i];  // which may pull the surface as a whole
     return acts;
 }
 
