@@ -21,8 +21,8 @@ constexpr int rounds = 3;                              // of swaps and slides
 /// The surface of one body while it is adapted.
 class Surface {
 public:
-    Surface(Mesh& mesh, Region region, Array<Vertex, double>& size, const AdaptOptions& options)
-        : mesh_(mesh), region_(region), size_(size), options_(options) {}
+    Surface(Mesh& mesh, Region region, unsigned pinned, Array<Vertex, double>& size, const AdaptOptions& options)
+        : mesh_(mesh), region_(region), pinned_(pinned), size_(size), options_(options) {}
 
     /// All edges of the triangles, each once.
     void take(std::span<const std::array<Vertex, 3>> triangles) {
@@ -54,7 +54,7 @@ public:
             else split(edge, *around);
         }
         for (Vertex v : new_)
-            if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, region_), passable);
+            if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, region_, pinned_), passable);
     }
 
     /// From now on, only edges are looked at that have changed, and those around them.
@@ -82,6 +82,7 @@ public:
                 if (swap(e, *around, passable)) helped = true;
             }
             for (Vertex v : vertices()) {
+                if (is_pinned(v)) continue;
                 const SurfaceStar star = surface_star(mesh_, v, region_);
                 if (least_angle(mesh_, star, mesh_.position[v]) >= poor_angle) continue;
                 if (try_change(slide(mesh_, v, region_), passable)) {
@@ -103,7 +104,7 @@ public:
         }
         const auto vertices = mesh_.tets[t];
         for (Vertex v : vertices) {
-            if (surface_star(mesh_, v, region_).sides.empty()) continue;
+            if (is_pinned(v) || surface_star(mesh_, v, region_).sides.empty()) continue;
             if (try_change(slide_for_cells(mesh_, v, region_), better)) {
                 ++changes.moved;
                 return true;
@@ -118,6 +119,9 @@ private:
     static bool comes_before(Edge a, Edge b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); }
     enum Demand { passable, better };
 
+    [[nodiscard]] bool is_pinned(Vertex v) const {
+        return pinned_ != 0 && (constraint(mesh_, v, ball(mesh_, v)).patches & pinned_) != 0;
+    }
     [[nodiscard]] double ratio(Edge e) const {
         return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size_[e.a] + size_[e.b]) / 2);
     }
@@ -171,13 +175,14 @@ private:
         ++changes.splits;
     }
     bool collapse(Edge e) {
+        if (is_pinned(e.a) || is_pinned(e.b)) return false;
         const double longest = longest_by_size * options_.split_above * (size_[e.a] + size_[e.b]) / 2;
         if (!try_change(surface_collapse(mesh_, e, region_, longest), passable)) return false;
         ++changes.collapses;
         return true;
     }
     bool swap(Edge e, const Shell& around, Demand demand) {
-        const auto change = surface_swap(mesh_, around, e, region_);
+        const auto change = surface_swap(mesh_, around, e, region_, pinned_);
         if (!try_change(change, demand)) return false;
         const Vertex c = change->moved[2].vertex, d = change->moved[3].vertex;
         edges_.push_back({std::min(c, d), std::max(c, d)});
@@ -187,6 +192,7 @@ private:
 
     Mesh& mesh_;
     Region region_;
+    unsigned pinned_;  // faces of the box
     Array<Vertex, double>& size_;
     const AdaptOptions& options_;
     std::vector<Edge> edges_;   // of the surface; some may be gone
@@ -207,8 +213,8 @@ bool has_wrong_size(const Mesh& mesh, const BodySurface& surface, const Array<Ve
 }
 
 Changes adapt_surface(Mesh& mesh, const BodySurface& surface, Array<Vertex, double>& size, bool all,
-                      const AdaptOptions& options) {
-    Surface adapted(mesh, region_of_body(surface.body), size, options);
+                      const AdaptOptions& options, unsigned pinned) {
+    Surface adapted(mesh, region_of_body(surface.body), pinned, size, options);
     adapted.take(surface.triangles);
     adapted.adapt_sizes();
     if (!all) adapted.keep_to_changed();
@@ -216,9 +222,10 @@ Changes adapt_surface(Mesh& mesh, const BodySurface& surface, Array<Vertex, doub
     return adapted.changes;
 }
 
-Changes improve_surface(Mesh& mesh, std::span<const Tet> cells, Region region, const AdaptOptions& options) {
+Changes improve_surface(Mesh& mesh, std::span<const Tet> cells, Region region, const AdaptOptions& options,
+                        unsigned pinned) {
     Array<Vertex, double> unused(mesh.position.size(), 1);
-    Surface improved(mesh, region, unused, options);
+    Surface improved(mesh, region, pinned, unused, options);
     for (Tet t : cells)
         if (is_worse(mesh, t, options.good_enough)) (void)improved.help(t);
     return improved.changes;

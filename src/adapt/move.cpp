@@ -164,8 +164,16 @@ Vec3 along_faces(const Box& box, const Vec3& x, Vec3 vector) {
     return vector;
 }
 
+/// Of a vector at `x` what a line is free to follow on the faces of the box on which `x` lies, exactly: what is along them, or
+/// nothing on those on which it is pinned.
+Vec3 free_part(const Box& box, unsigned pinned, const Vec3& x, const Vec3& vector) {
+    for (int face = 0; face < box_faces; ++face)
+        if (reaches(pinned, face) && x[face / 2] == (face % 2 == 0 ? box.min : box.max)[face / 2]) return {};
+    return along_faces(box, x, vector);
+}
+
 /// Puts the bodies' vertices where they go with the body; those of a deforming one that are on faces of the box, along these.
-void place_bodies(const Mesh& mesh, const Box& box, std::span<const Travel> travels,
+void place_bodies(const Mesh& mesh, const Domain& domain, std::span<const Travel> travels,
                   std::span<const std::vector<Vertex>> bodies, ZoneMotion& motion) {
     motion.bodies.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -174,18 +182,20 @@ void place_bodies(const Mesh& mesh, const Box& box, std::span<const Travel> trav
             motion.moves[v] = ZoneMotion::with_body;
             const Vec3& from = mesh.position[v];
             motion.place[v] = travels[i].taken_along(from);
-            if (travels[i].deformation != nullptr)
-                for (int axis = 0; axis < 3; ++axis)
-                    if (from[axis] == box.min[axis] || from[axis] == box.max[axis]) motion.place[v][axis] = from[axis];
+            if (travels[i].deformation == nullptr) continue;
+            const Vec3 free = free_part(domain.box, domain.bodies[i].pinned, from, {1, 1, 1});
+            for (int axis = 0; axis < 3; ++axis)
+                if (free[axis] == 0) motion.place[v][axis] = from[axis];
         }
 }
 
 /// The vertices of a surface went with the flow; what was flat between them has become curved. Shifts them along their
 /// normals by the volume that is between the flat triangles and the curved ones, so that the volume inside becomes what the
 /// flow makes of it, place by place: to the fourth power of the edges, not to the second. The curved triangle is the
-/// quadratic one through the images of the middles of its edges. A vertex on a face of the box is shifted along the face; what
-/// the flow takes through the face does not count as curved.
-void keep_with_flow(const Mesh& mesh, const Box& box, const Travel& travel, const BodySurface& surface, ZoneMotion& motion) {
+/// quadratic one through the images of the middles of its edges. A vertex on a face of the box is shifted along the face, or
+/// not at all where its line is pinned; what the flow takes through the face does not count as curved.
+void keep_with_flow(const Mesh& mesh, const Box& box, const Body& body, const Travel& travel, const BodySurface& surface,
+                    ZoneMotion& motion) {
     const auto number = [&](Vertex v) {
         return static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
     };
@@ -216,25 +226,32 @@ void keep_with_flow(const Mesh& mesh, const Box& box, const Travel& travel, cons
     }
     for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
         const Vertex v = surface.vertices[i];
-        const Vec3 free = along_faces(box, mesh.position[v], normal[i]);
+        const Vec3 free = free_part(box, body.pinned, mesh.position[v], normal[i]);
         if (squared_norm(free) > 0) motion.place[v] += 6 * missing[i] / squared_norm(free) * free;
     }
 }
 
-/// Shifts the vertices of a surface evenly along their normals, until what it holds is what it held before.
-void keep_volume(const Mesh& mesh, const BodySurface& surface, ZoneMotion& motion) {
+/// The volume that a surface sweeps from places to others, outwards: where it ends on a face of the box, it goes along that.
+double swept_volume(const BodySurface& surface, const Array<Vertex, Vec3>& from, const Array<Vertex, Vec3>& to) {
+    double sum = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const auto twice_area = [&](double done) {
+            const auto at = [&](Vertex v) { return from[v] + done * (to[v] - from[v]); };
+            return cross(at(b) - at(a), at(c) - at(a));
+        };
+        const Vec3 gone = to[a] - from[a] + to[b] - from[b] + to[c] - from[c];
+        sum += dot(gone, twice_area(0) + 4 * twice_area(0.5) + twice_area(1)) / 36;  // Simpson's rule, which is exact
+    }
+    return sum;
+}
+
+/// Shifts the vertices of a surface evenly along their normals, on faces of the box along these, until what it holds is what it
+/// held before.
+void keep_volume(const Mesh& mesh, const Box& box, const Body& body, const BodySurface& surface, ZoneMotion& motion) {
     constexpr int passes = 4;  // of Newton's method, which is next to linear here
     const auto number = [&](Vertex v) {
         return static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
     };
-    const Vec3 middle = mesh.position[surface.vertices.front()];
-    const auto volume = [&](const Array<Vertex, Vec3>& place) {
-        double sum = 0;
-        for (const auto& [a, b, c] : surface.triangles)
-            sum += dot(place[a] - middle, cross(place[b] - middle, place[c] - middle)) / 6;
-        return sum;
-    };
-    const double wanted = volume(mesh.position);
     for (int pass = 0; pass < passes; ++pass) {
         std::vector<Vec3> gradient(surface.vertices.size());  // of the volume, by the vertices' places
         for (const auto& [a, b, c] : surface.triangles) {
@@ -242,10 +259,14 @@ void keep_volume(const Mesh& mesh, const BodySurface& surface, ZoneMotion& motio
             for (Vertex v : {a, b, c}) gradient[number(v)] += area / 6;
         }
         double gained = 0;  // per length of the shift
-        for (const Vec3& g : gradient) gained += norm(g);
-        const double shift = (wanted - volume(motion.place)) / gained;
+        for (std::size_t i = 0; i < gradient.size(); ++i) {
+            gradient[i] = free_part(box, body.pinned, mesh.position[surface.vertices[i]], gradient[i]);
+            gained += norm(gradient[i]);
+        }
+        const double shift = -swept_volume(surface, mesh.position, motion.place) / gained;
         for (std::size_t i = 0; i < gradient.size(); ++i)
-            motion.place[surface.vertices[i]] += shift / norm(gradient[i]) * gradient[i];
+            if (const double size = norm(gradient[i]); size > 0)
+                motion.place[surface.vertices[i]] += shift / size * gradient[i];
     }
 }
 
@@ -364,10 +385,11 @@ void place_boundary(const Mesh& mesh, const Domain& domain, const MovedBodies& b
     const std::vector<Travel> travelling = travels(domain, at_start, t0, t1);
     reach_out(mesh, travelling, bodies, zone);
     fit(motion, mesh);
-    place_bodies(mesh, domain.box, travelling, bodies.vertices, motion);
+    place_bodies(mesh, domain, travelling, bodies.vertices, motion);
     for (const BodySurface& surface : bodies.deforming) {
-        keep_with_flow(mesh, domain.box, travelling[surface.body], surface, motion);
-        if (domain.bodies[surface.body].keeps_volume) keep_volume(mesh, surface, motion);
+        const Body& body = domain.bodies[surface.body];
+        keep_with_flow(mesh, domain.box, body, travelling[surface.body], surface, motion);
+        if (body.keeps_volume) keep_volume(mesh, domain.box, body, surface, motion);
     }
     const Snapshot at_end = snapshot(domain, t1, bodies.deforming, motion.place, bodies.uneven);
     place_columns(mesh, at_end, motion);

@@ -83,8 +83,8 @@ void MeshStep::adapt_surfaces(const Snapshot& at_time, const AdaptOptions& optio
     if (adapted_.empty()) return;
     Changes of_surfaces;
     for (const BodySurface& surface : adapted_) {
-        const bool deforms = bool(domain_.bodies[surface.body].deformation);
-        of_surfaces += adapt_surface(current_, surface, motion_.size, deforms, options);
+        const Body& body = domain_.bodies[surface.body];
+        of_surfaces += adapt_surface(current_, surface, motion_.size, bool(body.deformation), options, body.pinned);
     }
     auto cells = cells_at(current_, of_surfaces.vertices);
     cells.insert(cells.end(), of_surfaces.cells.begin(), of_surfaces.cells.end());
@@ -105,9 +105,10 @@ void MeshStep::improve_surfaces(std::vector<Tet> cells, const Snapshot& at_time,
         if (cells.empty()) return;
         Changes more;
         for (const BodySurface& surface : adapted_) {
+            const Body& of = domain_.bodies[surface.body];
             AdaptOptions of_surface = options;
-            if (domain_.bodies[surface.body].keeps_volume) of_surface.good_enough *= poor_at_liquids;
-            more += improve_surface(current_, cells, region_of_body(surface.body), of_surface);
+            if (of.keeps_volume) of_surface.good_enough *= poor_at_liquids;
+            more += improve_surface(current_, cells, region_of_body(surface.body), of_surface, of.pinned);
         }
         if (more.vertices.empty()) return;
         const auto at_moved = cells_at(current_, more.vertices);

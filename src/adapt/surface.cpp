@@ -61,19 +61,21 @@ std::vector<Triangle> triangles_at(const Mesh& mesh, std::span<const Vertex> ver
     return all;
 }
 
-/// The ways in which the vertices are shifted together: along `normal`, but along the faces of the box on which they lie. And
-/// a point in all these faces: seen from it, nothing of the volume is under them.
+/// The ways in which the vertices are shifted together: along `normal`, but along the faces of the box on which they lie, and not
+/// at all on those where the line is pinned. And a point in all these faces: seen from it, nothing of the volume is under them.
 struct Shift {
     std::vector<Vec3> ways;
     Vec3 origin;
     bool in_faces = false;  // the ways differ
 };
-std::optional<Shift> shift_of(const Mesh& mesh, std::span<const Displaced> moved, const Vec3& normal) {
+std::optional<Shift> shift_of(const Mesh& mesh, std::span<const Displaced> moved, const Vec3& normal, unsigned pinned) {
     Shift shift{{}, mesh.position[moved.front().vertex]};
     std::array<bool, 3> held{};
     for (const Displaced& d : moved) {
-        const Freedom free = free_on_patches(mesh, d.vertex, ball(mesh, d.vertex));
-        shift.ways.push_back(restricted(normal, free));
+        const auto around = ball(mesh, d.vertex);
+        const Freedom free = free_on_patches(mesh, d.vertex, around);
+        const bool is_pinned = (constraint(mesh, d.vertex, around).patches & pinned) != 0;
+        shift.ways.push_back(is_pinned ? Vec3{} : restricted(normal, free));
         shift.in_faces |= !free.all();
         for (int axis = 0; axis < 3; ++axis) {
             if (free.along[as_size(axis)]) continue;
@@ -87,10 +89,10 @@ std::optional<Shift> shift_of(const Mesh& mesh, std::span<const Displaced> moved
 
 /// Shifts the vertices by as much along `normal` as makes the volume under `after` that under `before`. Returns by how much.
 double keep_volume(const Mesh& mesh, std::span<const Triangle> before, std::span<const Triangle> after, const Vec3& normal,
-                   std::vector<Displaced>& moved) {
+                   unsigned pinned, std::vector<Displaced>& moved) {
     constexpr double small = 1e-3;  // [-] of an edge; linear along one way, the volume is not quite so along several,
     constexpr int most = 8;         // so Newton's method takes its steps
-    const auto by = shift_of(mesh, moved, normal);
+    const auto by = shift_of(mesh, moved, normal, pinned);
     if (!by) return infinity;
     const double wanted = volume_under(before, {mesh, {}}, by->origin);
     double length = 0;
@@ -325,7 +327,7 @@ std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Regio
     return change;
 }
 
-std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, Region region) {
+std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, Region region, unsigned pinned) {
     if (!shell.closed) return std::nullopt;
     const std::size_t n = shell.tets.size();
     const auto inside = [&](std::size_t i) { return mesh.region[shell.tets[i % n]] == region; };
@@ -369,14 +371,14 @@ std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, 
     const std::vector<Triangle> kept = after;
     after.insert(after.end(), {new_one, new_other});
     for (Vertex v : corners) change.moved.push_back({v, mesh.position[v]});
-    const double shift = keep_volume(mesh, before, after, normalised(normal), change.moved);
+    const double shift = keep_volume(mesh, before, after, normalised(normal), pinned, change.moved);
     if (!(std::abs(shift) <= most_shift * distance(mesh.position[c], mesh.position[d]))) return std::nullopt;
     if (!agree(kept, mesh, {mesh, change.moved})) return std::nullopt;
     look_at_moved(mesh, change);
     return if_valid(std::move(change));
 }
 
-std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region region) {
+std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region region, unsigned pinned) {
     const SurfaceStar star = surface_star(mesh, v, region);
     if (is_sharp(star, mesh) || !star.free.all()) return std::nullopt;
     const auto height = height_of_quadric(mesh, star, region);
@@ -391,7 +393,8 @@ std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region
     for (Vertex w : vertices) change.moved.push_back({w, mesh.position[w]});
     vertices.push_back(v);
     const auto triangles = triangles_at(mesh, vertices, region);
-    if (!(std::abs(keep_volume(mesh, triangles, triangles, normal, change.moved)) <= most_shift * shortest)) return std::nullopt;
+    const double shift = keep_volume(mesh, triangles, triangles, normal, pinned, change.moved);
+    if (!(std::abs(shift) <= most_shift * shortest)) return std::nullopt;
     if (!agree(triangles, mesh, {mesh, change.moved})) return std::nullopt;
     look_at_moved(mesh, change);
     return if_valid(std::move(change));

@@ -11,7 +11,8 @@ namespace kropla {
 
 // Operators on the surface of a region that deforms. Each keeps the volume of the region, to rounding, within the cells it
 // changes, so that what is carried from mesh to mesh keeps its integral and its bounds there; none touches a sharp edge but
-// to split it. Where the surface ends on faces of the box, its line stays there: vertices of it move along the faces.
+// to split it. Where the surface ends on faces of the box, its line stays there: vertices of it move along the faces, or not at
+// all on those on which it is `pinned`, a bit each.
 
 /// A vertex, and where it is to stand.
 struct Displaced {
@@ -43,11 +44,12 @@ Replacement carry_out_surface(Mesh& mesh, const SurfaceChange& change, Changes& 
 
 /// The other diagonal of the two triangles at the edge, its four vertices shifted together along the normal by what that
 /// takes from the volume or adds. Nothing for a sharp edge, or if the cells at the edge cannot be filled otherwise.
-[[nodiscard]] std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, Region region);
+[[nodiscard]] std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, Region region,
+                                                        unsigned pinned = 0);
 
 /// Puts the vertex on the quadric of those around it, and shifts all of them together along the normal, so that the volume
 /// is what it was. For vertices of splits. Nothing at sharp edges, or on a face of the box.
-[[nodiscard]] std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region region);
+[[nodiscard]] std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region region, unsigned pinned = 0);
 
 /// Slides the vertex towards the middle of the triangles around it, in the plane in which that does not change the
 /// volume. Nothing at sharp edges, or if the least angle of these triangles does not grow.

@@ -10,9 +10,9 @@
 namespace kropla {
 namespace {
 
-double area_of(const Mesh& mesh, Region region) {
+double area_of(const Mesh& mesh, const std::vector<std::array<Vertex, 3>>& facets) {
     double area = 0;
-    for (const auto& facet : region_surface(mesh, region).interface) area += norm(area_vector(mesh, facet));
+    for (const auto& facet : facets) area += norm(area_vector(mesh, facet));
     return area;
 }
 
@@ -47,7 +47,9 @@ std::vector<BodyState> body_states(const Domain& domain, const Mesh& mesh, const
         if (!(state.volume > 0)) continue;
         state.place = state.place / state.volume;
         state.mean /= state.volume;
-        state.area = area_of(mesh, Region(body + 1));
+        const RegionSurface surface = region_surface(mesh, Region(body + 1));
+        state.area = area_of(mesh, surface.interface);
+        state.on_faces = area_of(mesh, surface.outer);
     }
     return states;
 }

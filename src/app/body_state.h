@@ -12,6 +12,7 @@ namespace kropla {
 struct BodyState {
     Vec3 place;                              // [m] of its centroid
     double volume = 0, area = 0;             // [m^3], [m^2]
+    double on_faces = 0;                     // [m^2] of the faces of the box through which it reaches, what is within its lines
     double coldest = 0, mean = 0, hottest = 0;  // [K] if there is a temperature; the mean over its volume
 };
 /// Of each body of the domain, in order.

@@ -202,7 +202,6 @@ void refuse_with_cut(const CaseTable& table, const Case& it, const Body& body) {
     const std::string through = fmt::format("; this one reaches through {}", wall_name(face));
     if (body.layer) table.refuse("layer", "stands on bodies that are wholly in the box" + through);
     if (it.free.back()) table.table("motion").refuse("kind", "\"free\" is for bodies that are wholly in the box" + through);
-    if (it.liquid.back() != 0) table.table("motion").refuse("kind", "\"flow\" is for bodies that are wholly in the box" + through);
     const Pose start = body.motion(0);
     for (int axis = 0; axis < 3; ++axis)
         if (start.displacement[axis] != 0)

@@ -58,21 +58,84 @@ FlowFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
     return face;
 }
 
+/// The angle in a table or of all faces [degrees]; nothing: pinned.
+std::optional<double> read_angle(NotedTable& table, std::string_view key) {
+    if (table.table().holds_text(key) && table.table().text(key) == "pinned") {
+        table.note(key, "\"pinned\"");
+        return {};
+    }
+    const double angle = table.number(key);
+    if (!(angle > 0 && angle < 180))
+        table.table().refuse_value(key, "must be \"pinned\", or an angle in the liquid between 0 and 180 degrees");
+    return angle;
+}
+
+/// How the line of a liquid body moves on the faces through which it reaches.
+ContactAngles read_contact(NotedTable& surface, const Case& it, std::size_t body) {
+    const std::string_view key = "contact";
+    const CaseTable& table = surface.table();
+    ContactAngles contact = {};
+    if (!table.has(key)) return contact;
+    const unsigned reached = reached_faces(it.domain.bodies[body].shape);
+    if (reached == 0) table.refuse(key, "is how a surface ends on faces of the box, and this body is wholly in it");
+    if (!table.holds_table(key)) {
+        const auto angle = read_angle(surface, key);
+        for (int face = 0; face < box_faces; ++face)
+            if (reaches(reached, face)) contact[as_size(face)] = angle;
+        return contact;
+    }
+    const CaseTable faces = table.table(key);
+    faces.allow(std::vector<std::string>(face_keys.begin(), face_keys.end()));
+    WrittenKeys keys;
+    NotedTable noted(faces, probe_of(it.domain.box), keys);
+    for (std::size_t face = 0; face < contact.size(); ++face) {
+        if (!faces.has(face_keys[face])) continue;
+        if (!reaches(reached, static_cast<int>(face))) faces.refuse(face_keys[face], "is a face through which the body does not reach");
+        contact[face] = read_angle(noted, face_keys[face]);
+    }
+    surface.note(key, inline_table(keys));
+    return contact;
+}
+
+/// A bit each.
+unsigned pinned_faces(const ContactAngles& contact) {
+    unsigned pinned = 0;
+    for (std::size_t face = 0; face < contact.size(); ++face)
+        if (!contact[face]) pinned |= 1u << face;
+    return pinned;
+}
+
+/// Throws where a face does not let the line of a liquid body do what it should.
+void check_contact(const CaseTable& flow, const FlowPlan& plan, const Domain& domain, std::size_t body) {
+    const ContactAngles& contact = plan.options.contact[body];
+    for (std::size_t face = 0; face < contact.size(); ++face) {
+        if (!reaches(reached_faces(domain.bodies[body].shape), static_cast<int>(face))) continue;
+        const FlowFace::Kind kind = plan.options.faces[face].kind;
+        const std::string_view name = face_keys[face];
+        if (kind != FlowFace::Kind::wall && kind != FlowFace::Kind::slip)
+            flow.table("face").refuse(name, fmt::format("must be \"wall\" or \"slip\": liquid body {} reaches through it",
+                                                        domain.bodies[body].name));
+        if (contact[face] && kind != FlowFace::Kind::slip)
+            flow.table("surface").table(domain.bodies[body].name)
+                .refuse("contact", fmt::format("has the line move along {0}, where a wall without slip holds it: give it "
+                                               "flow.face.{0} = \"slip\", or pin it", name));
+    }
+}
+
 /// [flow.surface.NAME] of bodies that are liquid.
 void read_surfaces(const CaseTable& surfaces, Case& it, FlowPlan& plan) {
     std::vector<std::string> names;
     for (std::size_t body = 0; body < it.liquid.size(); ++body) names.push_back(it.domain.bodies[body].name);
     surfaces.allow(names);
-    plan.options.tension.resize(names.size());
-    it.written_flow.surfaces.assign(names.size(), {});
     for (std::size_t body = 0; body < names.size(); ++body) {
         if (!surfaces.has(names[body])) continue;
         if (it.liquid[body] == 0)
             surfaces.refuse(names[body], "is of a liquid, and the body is solid: give it motion.kind = \"flow\", or leave this out");
         const CaseTable table = surfaces.table(names[body]);
         NotedTable surface(table, probe_of(it.domain.box), it.written_flow.surfaces[body]);
-        table.allow({"tension"});
+        table.allow({"tension", "contact"});
         if (table.has("tension")) plan.options.tension[body] = read_material(surface, "tension", it, body + 1);
+        plan.options.contact[body] = read_contact(surface, it, body);
     }
 }
 
@@ -124,6 +187,9 @@ void read_flow(const CaseTable& file, Case& it) {
         if (it.liquid[body] != 0 && !plan.options.regions[body + 1])
             table.refuse("region", fmt::format("must have {}, which goes with the flow (motion.kind = \"flow\"): its density "
                                                "[kg/m^3] and viscosity [Pa s]", names[body + 1]));
+    plan.options.tension.resize(it.liquid.size());
+    plan.options.contact.resize(it.liquid.size());
+    written.surfaces.assign(it.liquid.size(), {});
     if (table.has("surface")) read_surfaces(table.table("surface"), it, plan);
 
     written.faces.fill("\"wall\"");
@@ -132,6 +198,11 @@ void read_flow(const CaseTable& file, Case& it) {
         faces.allow(std::vector<std::string>(face_keys.begin(), face_keys.end()));
         for (std::size_t f = 0; f < face_keys.size(); ++f)
             if (faces.has(face_keys[f])) plan.options.faces[f] = read_face(faces, face_keys[f], probe, written.faces[f]);
+    }
+    for (std::size_t body = 0; body < it.liquid.size(); ++body) {
+        if (it.liquid[body] == 0) continue;
+        check_contact(table, plan, it.domain, body);
+        it.domain.bodies[body].pinned = pinned_faces(plan.options.contact[body]);
     }
     const auto is_open = [](const FlowFace& face) { return face.kind == FlowFace::Kind::open; };
     if (!plan.options.regions[0]->density.constant() && std::ranges::none_of(plan.options.faces, is_open))

@@ -19,11 +19,25 @@ namespace {
 
 std::string toml_list(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
-Shape read_sphere(const CaseTable& table) {
+/// The ellipsoid, or with `cut = true` what of it is in the box.
+Shape cut_if_told(const CaseTable& table, const Box& box, Shape ellipsoid, WrittenBody& written) {
+    if (!table.has("cut") || !table.truth("cut")) return ellipsoid;
+    const bool is_round = written.shape == "sphere";
+    written.surface = {{"centre", toml_list(ellipsoid.centre)},
+                       {is_round ? "radius" : "axes", is_round ? toml_number(ellipsoid.semi_axes.x) : toml_list(ellipsoid.semi_axes)},
+                       {"cut", "true"}};
+    try {
+        return cut_ellipsoid(box, ellipsoid);
+    } catch (const DomainError& error) {
+        table.refuse("cut", error.what());
+    }
+}
+
+Shape read_sphere(const CaseTable& table, const Box& box, WrittenBody& written) {
     if (table.has("axes")) table.refuse("axes", "a sphere has a radius instead");
     if (table.has("rotation")) table.refuse("rotation", "a sphere has none");
     const double radius = table.length("radius");
-    return {table.place("centre"), {radius, radius, radius}, {}};
+    return cut_if_told(table, box, {table.place("centre"), {radius, radius, radius}, {}}, written);
 }
 
 Rotation read_rotation(const CaseTable& table, WrittenBody& written) {
@@ -35,11 +49,11 @@ Rotation read_rotation(const CaseTable& table, WrittenBody& written) {
     return rotation_about(axis, r[3] * std::numbers::pi / 180);
 }
 
-Shape read_ellipsoid(const CaseTable& table, WrittenBody& written) {
+Shape read_ellipsoid(const CaseTable& table, const Box& box, WrittenBody& written) {
     if (table.has("radius")) table.refuse("radius", "an ellipsoid has axes = [a, b, c] instead");
     Shape shape{table.place("centre"), table.lengths("axes"), {}};
     shape.orientation = read_rotation(table, written);
-    return shape;
+    return cut_if_told(table, box, std::move(shape), written);
 }
 
 /// Where a file of the case is: beside the case file, if its path does not begin at the root.
@@ -99,12 +113,12 @@ Shape read_cylinder(const CaseTable& table, const Box& box, WrittenBody& written
 
 /// The keys of shapes but those of this one are not known to it.
 void refuse_keys_of_others(const CaseTable& table, const std::string& shape) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 7> owners = {
-        {{"file", "surface"}, {"scale", "surface"}, {"cut", "surface"}, {"min", "slab"}, {"max", "slab"},
-         {"from", "cylinder"}, {"to", "cylinder"}}};
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 6> owners = {
+        {{"file", "surface"}, {"scale", "surface"}, {"min", "slab"}, {"max", "slab"}, {"from", "cylinder"}, {"to", "cylinder"}}};
     for (const auto& [key, owner] : owners)
         if (shape != owner && table.has(key)) table.refuse(key, fmt::format("is of shape = \"{}\"", owner));
     if (shape != "slab" && shape != "cylinder") return;
+    if (table.has("cut")) table.refuse("cut", "is of other shapes: a " + shape + " is cut away by itself where it is out of the box");
     for (const char* key : {"centre", "axes", "rotation"})
         if (table.has(key))
             table.refuse(key, shape == "slab" ? "a slab has min and max instead" : "a cylinder has from, to and radius instead");
@@ -119,8 +133,8 @@ Shape read_shape(const CaseTable& table, const Box& box, WrittenBody& written) {
     if (written.shape == "surface") return read_surface(table, box, written);
     if (written.shape == "slab") return read_slab(table, box, written);
     if (written.shape == "cylinder") return read_cylinder(table, box, written);
-    if (written.shape == "sphere") return read_sphere(table);
-    if (written.shape == "ellipsoid") return read_ellipsoid(table, written);
+    if (written.shape == "sphere") return read_sphere(table, box, written);
+    if (written.shape == "ellipsoid") return read_ellipsoid(table, box, written);
     table.refuse_value("shape", "must be \"sphere\", \"ellipsoid\", \"slab\", \"cylinder\" or \"surface\"");
 }
 

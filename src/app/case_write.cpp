@@ -38,13 +38,15 @@ std::string body(const Case& it, std::size_t number) {
     const WrittenBody& written = it.written_bodies[number];
     const std::string table = fmt::format("body[{}]", number);
     std::string text = fmt::format("\n[[body]]\nname = {}\nshape = \"{}\"\n", toml_text(body.name), written.shape);
-    if (written.shape == "sphere" || written.shape == "ellipsoid") text += line(it, table, "centre", vec3(body.shape.centre));
+    const bool by_formula = written.surface.empty();  // of those that may be
+    if (by_formula && (written.shape == "sphere" || written.shape == "ellipsoid"))
+        text += line(it, table, "centre", vec3(body.shape.centre));
     if (written.shape == "region") {
         text += fmt::format("region = {}\n", written.region);
-    } else if (written.shape == "sphere") {
+    } else if (by_formula && written.shape == "sphere") {
         text += line(it, table, "radius", body.shape.semi_axes.x);
     } else {
-        if (written.shape == "ellipsoid") text += line(it, table, "axes", vec3(body.shape.semi_axes));
+        if (by_formula && written.shape == "ellipsoid") text += line(it, table, "axes", vec3(body.shape.semi_axes));
         text += keys(it, table, written.surface);
         if (!written.rotation.empty()) text += line(it, table, "rotation", written.rotation);
     }

@@ -94,10 +94,20 @@ double edge_of(const SurfaceCourse& surface) {
     return std::sqrt(of_equilateral * surface.area / static_cast<double>(surface.facets.size()));
 }
 
+/// As the body goes along its surface: one that ends on faces of the box stands there.
+Vec3 way_of_whole(const SurfaceCourse& surface, const Array<Vertex, Vec3>& place) {
+    return surface.free.empty() ? way_of_centre(surface, place) : Vec3{};
+}
+
+/// Along which its vertices go as the flow does; on faces of the box along these.
+std::vector<Vec3> normals_of(const SurfaceCourse& surface, const Array<Vertex, Vec3>& position) {
+    return along_faces(surface_normals(surface.facets, surface.vertices, position), surface.free);
+}
+
 /// Along the normals as the flow goes, along the surface as the body.
 BodyCourse course_of(const SurfaceCourse& surface, const Array<Vertex, Vec3>& begin, const std::vector<Vec3>& normal,
                      double t, double dt) {
-    const Vec3 whole = way_of_centre(surface, begin);
+    const Vec3 whole = way_of_whole(surface, begin);
     std::vector<Vec3> displacement(surface.vertices.size());
     for (std::size_t i = 0; i < displacement.size(); ++i)
         displacement[i] = whole + dot(surface.displacement[i] - whole, normal[i]) * normal[i];
@@ -110,6 +120,7 @@ SurfaceCourse expected_course(const Mesh& begin, Region liquid, const Array<Vert
                               const Array<Vertex, Vec3>& rate, double dt) {
     SurfaceCourse surface{liquid, region_surface(begin, liquid).interface, {}, {}};
     surface.vertices = vertices_of(surface.facets);
+    surface.free = free_directions(surface.vertices, contact_lines(begin, liquid, surface.vertices));
     for (Vertex v : surface.vertices) surface.displacement.push_back(dt * velocity[v] + 0.5 * dt * dt * rate[v]);
     return surface;
 }
@@ -124,7 +135,7 @@ LiquidStep::LiquidStep(std::vector<Region> liquids, const Mesh& begin, const Arr
         const SurfaceCourse surface = expected_course(begin, liquid, velocity, rate, dt);
         for (std::size_t i = 0; i < surface.vertices.size(); ++i)
             half_way[surface.vertices[i]] += 0.5 * surface.displacement[i];
-        courses_.push_back(course_of(surface, begin.position, surface_normals(surface.facets, surface.vertices, half_way), t, dt));
+        courses_.push_back(course_of(surface, begin.position, normals_of(surface, half_way), t, dt));
     }
 }
 
@@ -134,8 +145,8 @@ LiquidStep::Verdict LiquidStep::take(const Mesh& before, const Mesh& current, co
     Array<Vertex, Vec3> half_way = before.position;
     for (const SurfaceCourse& surface : surfaces) {
         for (Vertex v : surface.vertices) half_way[v] = 0.5 * (before.position[v] + current.position[v]);
-        const std::vector<Vec3> normal = surface_normals(surface.facets, surface.vertices, half_way);
-        const Vec3 whole = way_of_centre(surface, before.position);
+        const std::vector<Vec3> normal = normals_of(surface, half_way);
+        const Vec3 whole = way_of_whole(surface, before.position);
         double missed = 0, way = 0, against_body = 0;  // [m], the largest
         for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
             const Vertex v = surface.vertices[i];

@@ -33,6 +33,11 @@ void add_contact(const StepReport& report, std::size_t body, const std::string& 
         row.push_back({fmt::format("contact_force_{}_{} [N]", "xyz"[axis], name), known ? report.contact.forces[body][axis] : 0});
 }
 
+/// Is it of a liquid, and reaches through faces of the box?
+bool wets_faces(const Case& it, std::size_t body) {
+    return body < it.liquid.size() && it.liquid[body] != 0 && reached_faces(it.domain.bodies[body].shape) != 0;
+}
+
 /// Where each body is, how it goes, and how large and warm it is.
 void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
     for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
@@ -47,6 +52,7 @@ void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
                                {fmt::format("w_{} [m/s]", name), velocity.z},
                                {fmt::format("volume_{} [m^3]", name), state.volume},
                                {fmt::format("area_{} [m^2]", name), state.area}});
+        if (wets_faces(it, body)) row.push_back({fmt::format("wetted_{} [m^2]", name), state.on_faces});
         if (it.flow) add_forces(report, body, name, row);
         if (it.contact && it.free[body]) add_contact(report, body, name, row);
         if (!it.heat) continue;

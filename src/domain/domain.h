@@ -64,6 +64,7 @@ struct Body {
     Deformation deformation = {};  // none: it moves rigidly. Else its surface goes with it, motion is not asked, and of a
                                    //   moving mesh's domain `shape` is what the mesh has at its time
     bool keeps_volume = false;     // as it deforms, by an even shift along the normals of its surface
+    unsigned pinned = 0;           // faces of the box, a bit each, along which the line does not move in which it ends there
 };
 
 /// What size.growth counts for at most: beyond, neighbouring cells differ so much that some cannot keep an R/r

@@ -1,4 +1,4 @@
-// Blocks and cylinders, as surfaces of triangles.
+// Blocks, cylinders and ellipsoids that are cut, as surfaces of triangles.
 
 #include <kropla/domain/solids.h>
 
@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 namespace kropla {
@@ -44,7 +45,62 @@ double going_on(const Box& box, const Vec3& end, const Vec3& outwards, double ra
     return std::isfinite(most) ? most : 0;
 }
 
+/// The unit sphere in triangles, those of an octahedron divided: planes through its centre along the axes go along edges.
+class FacetedSphere {
+public:
+    static constexpr int division = 32;  // of a quarter of a turn
+
+    FacetedSphere() {
+        for (const int x : {-1, 1})
+            for (const int y : {-1, 1})
+                for (const int z : {-1, 1}) add_octant({x, y, z});
+    }
+    std::vector<Vec3> points;
+    std::vector<std::array<int, 3>> triangles;
+
+private:
+    using Step = std::array<int, 3>;  // along the axes, `division` in all
+
+    int point(const Step& octant, const Step& at) {
+        const Step signed_at = {octant[0] * at[0], octant[1] * at[1], octant[2] * at[2]};
+        const auto [known, is_new] = made_.try_emplace(signed_at, static_cast<int>(points.size()));
+        if (is_new) {
+            Vec3 x;
+            for (int axis = 0; axis < 3; ++axis)
+                x[axis] = std::sin(signed_at[as_size(axis)] * std::numbers::pi / (2 * division));  // for even triangles
+            points.push_back(normalised(x));
+        }
+        return known->second;
+    }
+    void add(const Step& octant, const Step& a, const Step& b, const Step& c) {
+        const bool turned = octant[0] * octant[1] * octant[2] < 0;
+        triangles.push_back({point(octant, a), point(octant, turned ? c : b), point(octant, turned ? b : c)});
+    }
+    void add_octant(const Step& octant) {
+        for (int i = 0; i < division; ++i)
+            for (int k = 0; i + k < division; ++k) {
+                const int m = division - 1 - i - k;
+                add(octant, {i + 1, k, m}, {i, k + 1, m}, {i, k, m + 1});
+                if (m > 0) add(octant, {i, k + 1, m}, {i + 1, k, m}, {i + 1, k + 1, m - 1});
+            }
+    }
+
+    std::map<Step, int> made_;
+};
+
 }  // namespace
+
+Shape cut_ellipsoid(const Box& box, const Shape& ellipsoid) {
+    FacetedSphere sphere;
+    for (Vec3& x : sphere.points) {
+        for (int axis = 0; axis < 3; ++axis) x[axis] *= ellipsoid.semi_axes[axis];
+        x = ellipsoid.centre + rotated(ellipsoid.orientation, x);
+    }
+    Shape cut = cut_by(box, shape_within(std::move(sphere.points), sphere.triangles));
+    if (!cut.cut) return ellipsoid;
+    cut.resolved = least_curvature_radius(ellipsoid);
+    return cut;
+}
 
 Shape slab(const Box& box, const Vec3& min, const Vec3& max) {
     Vec3 low = min, high = max;

@@ -17,6 +17,10 @@ namespace kropla {
 /// Throws DomainError if it has no length, or nothing of its surface is in the box.
 [[nodiscard]] Shape cylinder(const Box& box, const Vec3& from, const Vec3& to, double radius);
 
+/// What of an ellipsoid is within the box, its surface in triangles that stand within it by less than 5e-4 of its axes; the
+/// ellipsoid itself if that is all of it. Throws DomainError if nothing of its surface is in the box.
+[[nodiscard]] Shape cut_ellipsoid(const Box& box, const Shape& ellipsoid);
+
 /// What of a shape that triangles bound is within the box, its centre the centroid of that; the shape itself if that is all
 /// of it. Throws DomainError if nothing of its surface is in the box, if one of its triangles lies in a face of the box, or
 /// if it reaches through all six.

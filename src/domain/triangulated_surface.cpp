@@ -326,12 +326,15 @@ double TriangulatedSurface::across(const Vec3& x, bool inside, double most) cons
     constexpr int steps = 60;         // each next to doubles the way, until the other side is near
     constexpr double first = 1e-3;    // [-] of the most
     constexpr double arrived = 1e-2;  // [-] of the way
+    if (!inside && reached_ != 0) return std::numeric_limits<double>::infinity();  // the way may be out of the box
     const NearestPlace start = tree_.nearest(x);
     const Vec3 normal = outwards(start) / norm(outwards(start));
     const Vec3 direction = inside ? -normal : normal;
     double way = first * most;
     for (int step = 0; step < steps && way < most; ++step) {
-        const double room = signed_distance(start.point + way * direction) * (inside ? -1 : 1);
+        const Vec3 place = start.point + way * direction;
+        if (inside && extent_.squared_distance(place) > 0) break;  // through a face of the box
+        const double room = signed_distance(place) * (inside ? -1 : 1);
         if (room <= arrived * way) return way;
         way += room;
     }

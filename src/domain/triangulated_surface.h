@@ -28,7 +28,7 @@ public:
     [[nodiscard]] double signed_distance(const Vec3& x) const;
     [[nodiscard]] Vec3 closest_point(const Vec3& x) const { return tree_.nearest(x).point; }
     /// How far it is from the place nearest to `x`, along the normal there, inwards or outwards, to another part of the
-    /// surface [m], to a hundredth; infinite if not within `most`. By steps as long as there is room [Hart 1996, "Sphere
+    /// surface [m], to a hundredth; infinite if not within `most`, and outwards of an open one. By steps as long as there is room [Hart 1996, "Sphere
     /// tracing"].
     [[nodiscard]] double across(const Vec3& x, bool inside, double most) const;
     /// The radius of the ball that touches it at the place nearest to `x`, from inside or outside, with none of its points

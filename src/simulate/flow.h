@@ -78,13 +78,18 @@ enum class FlowScheme {
 /// The tension of a surface between liquids or gases [N/m], of the temperature there.
 using Tension = std::optional<Property>;
 
+/// How the surface of a liquid ends on each face of the box: at this angle in the liquid [degrees] its line rests, at others it
+/// moves along the face, if that lets it slip; none: the line is pinned, and has the velocity of the face if one is given.
+using ContactAngles = std::array<std::optional<double>, 6>;
+
 struct FlowOptions {
     // Of region 0, 1, ...: a liquid or gas, or nothing: a solid body.
     std::vector<std::optional<FlowRegion>> regions;
     // Velocities of regions 1, 2, ...; of those that are empty, or not there: the mesh's, (x1 - x0) / dt, of
     // first order in time where a body accelerates.
     std::vector<std::function<RigidVelocity(double t)>> bodies = {};
-    std::vector<Tension> tension = {};     // of the surfaces of regions 1, 2, ... that are liquid
+    std::vector<Tension> tension = {};     // of the surfaces of regions 1, 2, ... that are liquid, and
+    std::vector<ContactAngles> contact = {};  // of those that reach through faces
     Vec3 gravity = {};                     // [m/s^2]
     bool convection = true;                // false: Stokes
     std::array<FlowFace, 6> faces = {};    // x min, x max, y min, y max, z min, z max
@@ -128,12 +133,13 @@ struct SurfaceCourse {
     std::vector<Vertex> vertices;       // ascending
     std::vector<Vec3> displacement;     // [m] of what is there at the step's begin
     double area = 0;                    // [m^2] at its end
+    std::vector<Vec3> free = {};        // as LiquidSurface::free
 };
 
 /// Of what flows, at the end of a step [J].
 struct FlowEnergy {
     double kinetic = 0;
-    double surface = 0;  // tension times area
+    double surface = 0;  // tension times area, less tension times the angle's cosine times the wetted area of faces
     double gravity = 0;  // against the origin of coordinates
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 namespace kropla {
@@ -136,10 +137,24 @@ void check_way_out(const Step& step, const FlowBoundary& boundary, const FlowCon
     throw CaseError(message.str());
 }
 
+/// Where it ends on faces of the box, as the options have it.
+void set_lines(const Mesh& mesh, const FlowOptions& options, LiquidSurface& liquid) {
+    auto lines = contact_lines(mesh, liquid.body, liquid.vertices);
+    liquid.free = free_directions(liquid.vertices, lines);
+    const auto number = static_cast<std::size_t>(liquid.body.value - 1);
+    for (std::size_t face = 0; face < lines.size(); ++face) {
+        if (lines[face].vertices.empty()) continue;
+        if (number < options.contact.size())
+            if (const auto& angle = options.contact[number][face]) lines[face].cosine = std::cos(*angle * std::numbers::pi / 180);
+        liquid.lines.push_back(std::move(lines[face]));
+    }
+}
+
 LiquidSurface liquid_surface(const Mesh& mesh, const FlowOptions& options, Region body,
                              const Array<Vertex, double>& temperature) {
     LiquidSurface liquid{body, region_surface(mesh, body).interface, {}, {}};
     liquid.vertices = vertices_of(liquid.facets);
+    set_lines(mesh, options, liquid);
     liquid.tension.assign(liquid.vertices.size(), 0);
     const auto number = static_cast<std::size_t>(body.value - 1);
     if (number >= options.tension.size() || !options.tension[number]) return liquid;
@@ -216,6 +231,10 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
         if (options.faces[face].kind == FlowFace::Kind::wall)
             for (Vertex v : vertices[face]) fix(step, v, at_rest, "", conditions);
     for (Vertex v : boundary.fixed_walls) fix(step, v, at_rest, "", conditions);
+    for (const LiquidSurface& liquid : boundary.liquids)
+        for (const ContactLine& line : liquid.lines)
+            if (!line.cosine && options.faces[line.face].kind == FlowFace::Kind::slip)
+                for (Vertex v : line.vertices) fix(step, v, at_rest, "", conditions);
     for (const SolidSurface& solid : boundary.solids) fix_solid(step, solid, conditions);
     if (conditions.closed) check_way_out(step, boundary, conditions);
     return conditions;

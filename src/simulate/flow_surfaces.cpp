@@ -60,7 +60,8 @@ void FlowSurfaces::end(const Array<Vertex, Vec3>& velocity, double time) {
 std::vector<SurfaceCourse> FlowSurfaces::courses() const {
     std::vector<SurfaceCourse> courses;
     for (std::size_t s = 0; s < liquids_.size(); ++s)
-        courses.push_back({liquids_[s].body, liquids_[s].facets, liquids_[s].vertices, gone_[s], tensions_[s].area});
+        courses.push_back({liquids_[s].body, liquids_[s].facets, liquids_[s].vertices, gone_[s], tensions_[s].area,
+                           liquids_[s].free});
     return courses;
 }
 

@@ -99,5 +99,94 @@ TEST(RunLiquid, GoesOnAsIfItHadNotStoppedOrBeenTakenBack) {
     EXPECT_EQ(frames(folder.path / "d").at("00004.vtu"), frames(folder.path / "whole").at("00004.vtu"));
 }
 
+/// A drop that sits on a floor, half a ball.
+std::string sessile_case(std::string_view contact, std::string_view floor) {
+    return R"toml([domain]
+min = [-2.5, -2.5, 0]
+max = [2.5, 2.5, 2.5]
+[[body]]
+name = "drop"
+shape = "sphere"
+centre = [0, 0, 0]
+radius = 1
+cut = true
+[body.motion]
+kind = "flow"
+[size]
+surface = 0.35
+growth = 0.5
+far = 1.5
+[time]
+end = 1
+steps = 10
+[flow]
+[flow.region.surroundings]
+density = 0.1
+viscosity = 0.03
+[flow.region.drop]
+density = 1
+viscosity = 0.3
+[flow.surface.drop]
+tension = 1
+contact = )toml" + std::string(contact) + "\n[flow.face]\nz_min = " + std::string(floor) + "\n";
+}
+
+TEST(CaseLiquid, OnAFloorIsReadAndWrittenAgain) {
+    for (const auto& [contact, floor] : {std::pair{"60", "\"slip\""}, std::pair{"\"pinned\"", "\"wall\""},
+                                         std::pair{"{ z_min = 60 }", "\"slip\""}}) {
+        const Case it = parse_case(sessile_case(contact, floor), "case.toml");
+        const auto& angle = it.flow->options.contact.at(0).at(4);
+        EXPECT_EQ(angle.has_value(), it.flow->options.faces[4].kind == FlowFace::Kind::slip);
+        if (angle) EXPECT_EQ(*angle, 60);
+        EXPECT_EQ((it.domain.bodies[0].pinned >> 4 & 1u) != 0, !angle.has_value());
+        const std::string written = to_toml(it);
+        EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
+        EXPECT_NE(written.find(std::string("contact = ") + contact), std::string::npos) << written;
+        EXPECT_NE(written.find("radius = 1\ncut = true"), std::string::npos) << written;
+    }
+}
+
+TEST(CaseLiquid, RefusesLinesThatCannotMove) {
+    EXPECT_EQ(refusal(sessile_case("60", "\"wall\"")),
+              "case.toml: flow.surface.drop.contact (line 28): has the line move along z_min, where a wall without slip holds it: "
+              "give it flow.face.z_min = \"slip\", or pin it");
+    EXPECT_EQ(refusal(sessile_case("180", "\"slip\"")),
+              "case.toml: flow.surface.drop.contact (line 28): must be \"pinned\", or an angle in the liquid between 0 and 180 "
+              "degrees, got 180");
+    EXPECT_EQ(refusal(sessile_case("{ x_min = 60 }", "\"slip\"")),
+              "case.toml: flow.surface.drop.contact.x_min (line 28): is a face through which the body does not reach");
+    EXPECT_EQ(refusal(sessile_case("60", "{ pressure = 0 }")),
+              "case.toml: flow.face.z_min (line 30): must be \"wall\" or \"slip\": liquid body drop reaches through it");
+    EXPECT_EQ(refusal(replaced(drop_case, "tension = 1", "tension = 1\ncontact = 60")),
+              "case.toml: flow.surface.drop.contact (line 27): is how a surface ends on faces of the box, and this body is wholly "
+              "in it");
+}
+
+TEST(RunLiquid, SpreadsOnAFloorThatItWets) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", sessile_case("60", "\"slip\""));
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const auto columns = lasting_columns(folder.path / "d");
+    const auto number = [&](const char* name, std::size_t step) { return std::stod(columns.at(name).at(step)); };
+    EXPECT_NEAR(number("volume_drop", 9) / number("volume_drop", 0), 1, 1e-13);
+    EXPECT_GT(number("wetted_drop", 9), 1.1 * number("wetted_drop", 0));
+    EXPECT_LT(number("surface_energy", 9), number("surface_energy", 0));
+    EXPECT_EQ(kropla_program(folder, "check d").code, 0);
+}
+
+TEST(RunLiquid, SagsOnALineThatIsPinned) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", sessile_case("\"pinned\"", "\"wall\""));
+    const Outcome it = kropla_program(folder, "run a.toml --out d --set flow.gravity=[0,0,-1]");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const auto columns = lasting_columns(folder.path / "d");
+    const auto number = [&](const char* name, std::size_t step) { return std::stod(columns.at(name).at(step)); };
+    EXPECT_NEAR(number("volume_drop", 9) / number("volume_drop", 0), 1, 1e-13);
+    EXPECT_NEAR(number("wetted_drop", 9) / number("wetted_drop", 0), 1, 1e-13);
+    EXPECT_LT(number("z_drop", 9), 0.99 * number("z_drop", 0));
+    EXPECT_GT(number("area_drop", 9), number("area_drop", 0)) << "what gravity gives to the tension";
+}
+
 }  // namespace
 }  // namespace kropla

@@ -62,7 +62,7 @@ TEST(CaseSolids, RefusalsNameKeyAndLine) {
               "case.toml: body[1].to (line 13): its two ends are in one place: (0, 0, 1.5) m");
     EXPECT_EQ(refused("radius = 0.25", "radius = 0.25\ncentre = [0, 0, 0]"),
               "case.toml: body[1].centre (line 15): a cylinder has from, to and radius instead");
-    EXPECT_EQ(refused("radius = 0.25", "radius = 0.25\ncut = true"), "case.toml: body[1].cut (line 15): is of shape = \"surface\"");
+    EXPECT_EQ(refused("radius = 0.25", "radius = 0.25\ncut = true"), "case.toml: body[1].cut (line 15): is of other shapes: a cylinder is cut away by itself where it is out of the box");
     EXPECT_EQ(refused("-0.3*t", "0.1 - 0.3*t"),
               "case.toml: body[1].motion.z (line 16): must be 0 at t = 0 for a body that is cut; this one reaches through the wall z max");
     EXPECT_EQ(refused("[body.motion]", "[body.layer]\ncount = 2\n[body.motion]"),

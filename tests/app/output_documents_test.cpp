@@ -2,6 +2,7 @@
 #include "app/body_sizes.h"
 #include "app/step_row.h"
 #include "temporary_folder.h"
+#include <kropla/domain/solids.h>
 
 #include <gtest/gtest.h>
 
@@ -26,6 +27,9 @@ TEST(OutputDocuments, HaveTheColumnsOfSteps) {
     Case it;
     it.domain.bodies.resize(1);
     it.domain.bodies[0].name = "NAME";
+    it.domain.box = {{0, 0, 0}, {1, 1, 1}};
+    it.domain.bodies[0].shape = slab(it.domain.box, {0, 0, 0}, {1, 1, 0.5});
+    it.liquid = {1};
     it.heat.emplace();
     it.species = {{.name = "SPECIES", .regions = {}}};
     it.free.resize(1);

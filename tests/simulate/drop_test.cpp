@@ -77,6 +77,58 @@ TEST(SurfaceTension, IsBoundSymmetricallyAndLetsAShiftBe) {
     for (double s : sum) EXPECT_NEAR(s, 0, 1e-13);
 }
 
+/// A pyramid of six sides on the floor z = 0, with its tip, vertex 0, above the middle of the floor, vertex 7.
+struct Pyramid {
+    Array<Vertex, Vec3> position = Array<Vertex, Vec3>(8);
+    LiquidSurface surface{Region(1), {}, {}, std::vector<double>(7, 0.8)};
+
+    explicit Pyramid(double angle) {
+        ContactLine line{4, {}, {}, std::cos(angle)};
+        position[Vertex(0)] = {0, 0, 0.6};
+        surface.vertices = {Vertex(0)};
+        surface.free = {{1, 1, 1}};
+        for (int i = 1; i <= 6; ++i) {
+            const double turn = i * std::numbers::pi / 3;
+            const Vertex next(i % 6 + 1);
+            position[Vertex(i)] = {std::cos(turn), std::sin(turn), 0};
+            surface.facets.push_back({Vertex(0), Vertex(i), next});
+            surface.vertices.push_back(Vertex(i));
+            surface.free.push_back({1, 1, 0});
+            line.vertices.push_back(Vertex(i));
+            line.wetted.push_back({Vertex(7), next, Vertex(i)});
+        }
+        surface.lines = {line};
+    }
+};
+
+TEST(SurfaceTension, PullsAContactLineToWhereItsEnergyIsLess) {
+    constexpr double small = 1e-4;
+    for (const double angle : {0.5, 1.0, 2.0}) {
+        Pyramid pyramid(angle);
+        const SurfaceTension acts = surface_tension(pyramid.surface, pyramid.position);
+        for (int i = 1; i <= 6; ++i) {
+            const Vec3 there = pyramid.position[Vertex(i)];  // outwards, its length is 1
+            const auto energy = [&](double further) {
+                pyramid.position[Vertex(i)] = (1 + further) * there;
+                return surface_tension(pyramid.surface, pyramid.position).energy;
+            };
+            const double slope = (energy(small) - energy(-small)) / (2 * small);
+            pyramid.position[Vertex(i)] = there;
+            EXPECT_NEAR(dot(acts.force[as_size(i)], there), -slope, 1e-8) << angle;
+        }
+    }
+}
+
+TEST(SurfaceTension, PullsTheFloorUpAsTheTipDown) {
+    Pyramid pyramid(1);
+    pyramid.position[Vertex(0)] += {0.2, -0.1, 0};
+    const SurfaceTension acts = surface_tension(pyramid.surface, pyramid.position);
+    Vec3 sum;
+    for (const Vec3& force : acts.force) sum += force;
+    EXPECT_LE(norm(sum), 1e-14);
+    EXPECT_LT(acts.force[0].z, -1);
+}
+
 FlowOptions drop_options(double tension) {
     FlowOptions options = fluid(0.1, 0.002, uniform({}));
     for (FlowFace& face : options.faces) face = {};
