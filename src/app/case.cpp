@@ -189,10 +189,10 @@ toml::table parse(std::string_view text, const std::string& name) {
 void refuse_with_deforming(const CaseTable& file, const Case& it) {
     for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
         const Body& of = it.domain.bodies[body];
-        if (!of.deformation || it.liquid[body] != 0) continue;
+        if (!of.deformation || it.liquid[body] != 0 || rests_on_faces(it, body)) continue;
         const std::string why =
             fmt::format("is solved for around bodies that {}", of.shape.cut
-                            ? fmt::format("are wholly in the box; {} reaches through faces of it", named(of))
+                            ? fmt::format("are wholly in the box, or at rest; {} reaches through faces of it, and moves", named(of))
                             : fmt::format("move rigidly, or with the flow; {} deforms (motion.kind = \"field\")", named(of)));
         for (const char* key : {"heat", "species", "flow"})
             if (file.has(key)) file.refuse(key, why);
@@ -219,7 +219,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     it.time = read_time(file.table("time"));
     if (file.has("heat")) it.heat = read_heat(file.table("heat"), it.domain, it.written_heat);
     for (std::size_t body = 0; body < it.liquid.size() && it.heat; ++body)
-        if (it.liquid[body] != 0) it.heat->regions[body + 1].carried = Carried::at_rest;
+        if (it.liquid[body] != 0 || rests_on_faces(it, body)) it.heat->regions[body + 1].carried = Carried::at_rest;
     read_species(file, it);
     read_flow(file, it);
     read_contact(file, it);
@@ -232,6 +232,12 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
             it.parameters.push_back({parameter, reading.parameters.at(parameter), reading.used.contains(parameter)});
     it.written_numbers = std::move(reading.written);
     return it;
+}
+
+bool rests_on_faces(const Case& it, std::size_t body) {
+    const WrittenBody& written = it.written_bodies[body];
+    const bool has_path = written.motion != std::array<std::string, 3>{} || !written.angle.empty();
+    return it.domain.bodies[body].shape.cut && it.liquid[body] == 0 && !has_path && written.velocity.empty();
 }
 
 Case read_case(const std::filesystem::path& path, std::span<const std::string> settings) {

@@ -143,6 +143,9 @@ inline constexpr double most_tets = 2e7;
 /// The case as it is run, defaults filled in, as a case file that reads as the same case again.
 [[nodiscard]] std::string to_toml(const Case& it);
 
+/// Is a body solid and at rest, and reaches through faces of the box?
+[[nodiscard]] bool rests_on_faces(const Case& it, std::size_t body);
+
 /// About how many tets the domain's mesh will have at t = 0: the integral of the size field's tets per
 /// volume.
 [[nodiscard]] double estimate_tets(const Domain& domain);

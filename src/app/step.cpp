@@ -348,7 +348,8 @@ private:
         HeatOptions options{.regions = std::vector<HeatRegion>(it_.domain.bodies.size() + 1)};
         for (std::size_t r = 0; r < options.regions.size(); ++r) {
             options.regions[r].name = region_name(it_.domain, r);
-            options.regions[r].carried = r == 0 || it_.liquid[r - 1] != 0 ? Carried::at_rest : Carried::with_mesh;
+            const bool by_flow = r == 0 || it_.liquid[r - 1] != 0 || rests_on_faces(it_, r - 1);
+            options.regions[r].carried = by_flow ? Carried::at_rest : Carried::with_mesh;
         }
         return options;
     }

@@ -62,7 +62,7 @@ Vec3 spin_of(const std::array<Vec3, 3>& inertia, const Vec3& moment, const Vec3&
 /// surface would keep a drop at rest swimming for ever.
 void take_off_sum(const std::vector<Vec3>& direction, const std::vector<double>& share, const Vec3& free,
                   std::vector<Vec3>& force) {
-    constexpr double rounding = 1e-12;
+    constexpr double rounding = 1e-16;
     Vec3 sum;
     std::array<Vec3, 3> spread = {};
     double all = 0;

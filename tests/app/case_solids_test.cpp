@@ -68,8 +68,8 @@ TEST(CaseSolids, RefusalsNameKeyAndLine) {
     EXPECT_EQ(refused("[body.motion]", "[body.layer]\ncount = 2\n[body.motion]"),
               "case.toml: body[1].layer (line 15): stands on bodies that are wholly in the box; this one reaches through the wall z max");
     EXPECT_EQ(refused("steps = 3", "steps = 3\n[flow]\n[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n"),
-              "case.toml: flow (line 24): is solved for around bodies that are wholly in the box; body \"pool\" reaches "
-              "through faces of it");
+              "case.toml: flow (line 24): is solved for around bodies that are wholly in the box, or at rest; body \"wire\" reaches "
+              "through faces of it, and moves");
 }
 
 TEST(RunSolids, AWireIsFedTowardsAPool) {
@@ -84,6 +84,74 @@ TEST(RunSolids, AWireIsFedTowardsAPool) {
         EXPECT_NEAR(std::stod(columns.at("volume_wire")[step]) / (area * (0.55 + 0.05 * static_cast<double>(step))), 0.95906, 2e-4);
     for (const std::string& r : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(r), 6);
     EXPECT_EQ(kropla_program(folder, "check d").code, 0);
+}
+
+constexpr std::string_view plate_case = R"toml([domain]
+min = [-1, -1, -0.5]
+max = [1, 1, 1.5]
+[[body]]
+name = "plate"
+shape = "slab"
+min = [-1, -1, -0.5]
+max = [1, 1, 0]
+[[body]]
+name = "ball"
+shape = "sphere"
+centre = [0, 0, 0.9]
+radius = 0.3
+[body.motion]
+z = "-0.5*t"
+[size]
+surface = 0.2
+growth = 0.4
+far = 0.4
+[time]
+end = 0.4
+steps = 4
+[heat.region.surroundings]
+conductivity = 0.1
+density = 1
+specific_heat = 1
+initial = 500
+[heat.region.plate]
+conductivity = 1
+density = 10
+specific_heat = 1
+initial = 400
+[heat.region.ball]
+conductivity = 1
+density = 10
+specific_heat = 1
+initial = 1000
+[heat.face]
+z_min = { value = 300 }
+[heat.surface.plate]
+flux = 50
+)toml";
+constexpr std::string_view in_a_flow = R"toml([flow.region.surroundings]
+density = 1
+viscosity = 0.1
+[flow.face]
+z_max = { pressure = 0 }
+)toml";
+
+TEST(RunSolids, APlateIsHeatedAsABallComesDown) {
+    for (const bool flows : {false, true}) {
+        const TemporaryFolder folder;
+        write(folder.path / "a.toml", std::string(plate_case) + std::string(flows ? in_a_flow : ""));
+        const Outcome it = kropla_program(folder, "run a.toml --out d");
+        ASSERT_EQ(it.code, 0) << it.err;
+        const auto columns = lasting_columns(folder.path / "d");
+        for (std::size_t step = 0; step < 4; ++step) {
+            const auto number = [&](const char* name) { return std::stod(columns.at(name)[step]); };
+            EXPECT_NEAR(number("heat_at_surfaces"), 200, 1e-9) << "the plate is 4 m^2 large";
+            EXPECT_NEAR(number("energy_error"), 0, 1e-12 * number("energy_integral"));
+            EXPECT_GE(number("temperature_min_plate"), 300 - 1e-9);
+            EXPECT_LE(number("temperature_max_ball"), 1000 + 1e-9);
+            EXPECT_NEAR(number("volume_plate"), 2, 1e-12);
+            EXPECT_LE(number("max_aspect_ratio"), 5.6);
+        }
+    }
 }
 
 TEST(RunSolids, ThroughAFaceOnlyUpright) {
