@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <numbers>
 
 namespace kropla {
 
@@ -135,6 +136,33 @@ inline constexpr double share_of_safe = 0.7;
 inline constexpr double least_leg = 0.02;
 /// [-] scaled Jacobian of a prism's corners. Smaller: prisms that a solver cannot use. Larger: refused early. Chosen.
 inline constexpr double least_jacobian = 0.1;
+
+// --- Surfaces that change (adapt_surface.cpp, surface.cpp, surface_star.cpp, move.cpp)
+/// [rad] the sum of the angles across an edge, beyond which it is swapped: Delaunay's pi, and a little. Smaller: swaps to and
+/// fro where the surface is not flat. Larger: obtuse triangles stay. Chosen.
+inline constexpr double flat_pair = 1.05 * std::numbers::pi;
+/// [rad] of a triangle, 34 degrees: its vertices are slid. Smaller: needles stay. Larger: more cells change. Chosen.
+inline constexpr double poor_angle = 0.6;
+/// of swaps and slides. Fewer: triangles are left as they are. More: nothing, as they end by themselves. Chosen.
+inline constexpr int most_surface_rounds = 3;
+/// halvings of a slide that does not help. Chosen.
+inline constexpr int most_slide_halvings = 3;
+/// [of an edge] by which a vertex may be shifted along the normal, to keep the volume or to meet a quadric. Smaller: changes
+/// are refused where the surface bends. Larger: dents. Chosen.
+inline constexpr double most_shift = 0.3;
+/// [-] cosine between the normals of a triangle before and after. Smaller: folds. Larger: changes are refused. Chosen.
+inline constexpr double least_agreement = 0.5;
+/// [-] cosine of the angle between normals, 75 degrees: beyond it an edge is sharp, and kept. Chosen.
+inline constexpr double sharp = 0.25;
+/// to fit a quadric of six unknowns by least squares, and its least pivot [of the largest, scaled by the distances]: with
+/// less, the surface is taken as flat. Chosen.
+inline constexpr std::size_t least_quadric_points = 8;
+inline constexpr double least_quadric_pivot = 1e-6;
+/// of Newton's method for a shift that keeps a volume: all vertices of a surface along their normals; a few along several
+/// faces, with differences over this share [of an edge]. Both are next to linear: more bring nothing. Chosen.
+inline constexpr int even_shift_steps = 4;
+inline constexpr int most_shift_steps = 8;
+inline constexpr double shift_difference = 1e-3;
 
 // --- After a refusal (2.2)
 /// [target sizes] around the place of trouble that are remeshed. Smaller: it gets stuck again. Larger: more cells are
