@@ -8,15 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 namespace kropla {
 namespace {
-
-constexpr double flat_pair = 1.05 * std::numbers::pi;  // [rad] the sum of the angles across an edge, beyond which it is swapped
-constexpr double poor_angle = 0.6;                     // [rad] of a triangle, 34 degrees: its vertices are slid
-constexpr int rounds = 3;                              // of swaps and slides
 
 /// The surface of one body while it is adapted.
 class Surface {
@@ -72,7 +67,7 @@ public:
     }
 
     void adapt_shapes() {
-        for (int round = 0; round < rounds; ++round) {
+        for (int round = 0; round < most_surface_rounds; ++round) {
             bool helped = false;
             const auto edges = edges_;
             for (const Edge e : edges) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <numbers>
 
 namespace kropla {
 
@@ -136,6 +137,37 @@ inline constexpr double least_leg = 0.02;
 /// [-] scaled Jacobian of a prism's corners. Smaller: prisms that a solver cannot use. Larger: refused early. Chosen.
 inline constexpr double least_jacobian = 0.1;
 
+// --- Surfaces that change (adapt_surface.cpp, surface.cpp, surface_star.cpp, move.cpp)
+/// [rad] the sum of the angles across an edge, beyond which it is swapped: Delaunay's pi, and a little. Smaller: swaps to and
+/// fro where the surface is not flat. Larger: obtuse triangles stay. Chosen.
+inline constexpr double flat_pair = 1.05 * std::numbers::pi;
+/// [rad] of a triangle, 34 degrees: its vertices are slid. Smaller: needles stay. Larger: more cells change. Chosen.
+inline constexpr double poor_angle = 0.6;
+/// of swaps and slides. Fewer: triangles are left as they are. More: nothing, as they end by themselves. Chosen.
+inline constexpr int most_surface_rounds = 3;
+/// halvings of a slide that does not help. Chosen.
+inline constexpr int most_slide_halvings = 3;
+/// [of an edge] by which a vertex may be shifted along the normal, to keep the volume or to meet a quadric. Smaller: changes
+/// are refused where the surface bends. Larger: dents. Chosen.
+inline constexpr double most_shift = 0.3;
+/// [-] cosine between the normals of a triangle before and after. Smaller: folds. Larger: changes are refused. Chosen.
+inline constexpr double least_agreement = 0.5;
+/// [-] cosine of the angle between normals, 75 degrees: beyond it an edge is sharp, and kept. Chosen.
+inline constexpr double sharp = 0.25;
+/// to fit a quadric of six unknowns by least squares, and its least pivot [of the largest, scaled by the distances]: with
+/// less, the surface is taken as flat. Chosen.
+inline constexpr std::size_t least_quadric_points = 8;
+inline constexpr double least_quadric_pivot = 1e-6;
+/// of Newton's method for a shift that keeps a volume: all vertices of a surface along their normals; a few along several
+/// faces, with differences over this share [of an edge]. Both are next to linear: more bring nothing. Chosen.
+inline constexpr int even_shift_steps = 4;
+inline constexpr int most_shift_steps = 8;
+inline constexpr double shift_difference = 1e-3;
+
+/// [good_enough] for the sake of worse cells triangles of a liquid's surface are changed. Smaller: more changes, each of which
+/// disturbs the flow. Larger: worse cells there. Chosen.
+inline constexpr double poor_at_liquids = 1.1;
+
 // --- After a refusal (2.2)
 /// [target sizes] around the place of trouble that are remeshed. Smaller: it gets stuck again. Larger: more cells are
 /// replaced, and the solution projected. Chosen.
@@ -151,10 +183,6 @@ inline constexpr int rings_of_trouble = 2;
 /// By the paper's method: refusals until the whole region is meshed anew, and AdaptOptions::cut_out there. Chosen.
 inline constexpr std::size_t refusals_until_all_anew = 3;
 inline constexpr double cut_out_of_trouble = 50;
-
-/// [good_enough] for the sake of worse cells triangles of a liquid's surface are changed. Smaller: more changes, each of which
-/// disturbs the flow. Larger: worse cells there. Chosen.
-inline constexpr double poor_at_liquids = 1.1;
 
 // --- What is told (refusal.cpp, fits_domain.cpp)
 /// [target sizes] across a place of trouble: in less, a cell has to be flat, or smaller than wanted, and the gap is named.

@@ -248,11 +248,10 @@ double swept_volume(const BodySurface& surface, const Array<Vertex, Vec3>& from,
 /// Shifts the vertices of a surface evenly along their normals, on faces of the box along these, until what it holds is what it
 /// held before.
 void keep_volume(const Mesh& mesh, const Box& box, const Body& body, const BodySurface& surface, ZoneMotion& motion) {
-    constexpr int passes = 4;  // of Newton's method, which is next to linear here
     const auto number = [&](Vertex v) {
         return static_cast<std::size_t>(std::ranges::lower_bound(surface.vertices, v) - surface.vertices.begin());
     };
-    for (int pass = 0; pass < passes; ++pass) {
+    for (int pass = 0; pass < even_shift_steps; ++pass) {
         std::vector<Vec3> gradient(surface.vertices.size());  // of the volume, by the vertices' places
         for (const auto& [a, b, c] : surface.triangles) {
             const Vec3 area = cross(motion.place[b] - motion.place[a], motion.place[c] - motion.place[a]);

@@ -19,10 +19,6 @@
 namespace kropla {
 namespace {
 
-constexpr double most_shift = 0.3;       // [-] of an edge, by which a vertex may be shifted along the normal
-constexpr double least_agreement = 0.5;  // [-] cosine between the normals of a triangle before and after
-constexpr int slide_halvings = 3;        // of a slide that does not help
-
 using Triangle = std::array<Vertex, 3>;
 
 /// Places of a mesh, some of them changed.
@@ -90,21 +86,20 @@ std::optional<Shift> shift_of(const Mesh& mesh, std::span<const Displaced> moved
 /// Shifts the vertices by as much along `normal` as makes the volume under `after` that under `before`. Returns by how much.
 double keep_volume(const Mesh& mesh, std::span<const Triangle> before, std::span<const Triangle> after, const Vec3& normal,
                    unsigned pinned, std::vector<Displaced>& moved) {
-    constexpr double small = 1e-3;  // [-] of an edge; linear along one way, the volume is not quite so along several,
-    constexpr int most = 8;         // so Newton's method takes its steps
     const auto by = shift_of(mesh, moved, normal, pinned);
     if (!by) return infinity;
     const double wanted = volume_under(before, {mesh, {}}, by->origin);
     double length = 0;
     for (const auto& [a, b, c] : after) length = std::max(length, distance(mesh.position[a], mesh.position[b]));
-    const double step = by->in_faces ? small * length : length;
+    const double step = by->in_faces ? shift_difference * length : length;
     const auto shifted = [&](double shift) {
         std::vector<Displaced> places = moved;
         for (std::size_t i = 0; i < places.size(); ++i) places[i].place += shift * by->ways[i];
         return places;
     };
     double sum = 0;
-    for (int i = 0; i < (by->in_faces ? most : 2); ++i) {  // the second time for rounding
+    // Linear along one way, and once more for rounding; along several the volume is not quite so.
+    for (int i = 0; i < (by->in_faces ? most_shift_steps : 2); ++i) {
         const double here = volume_under(after, {mesh, moved}, by->origin);
         const double slope = (volume_under(after, {mesh, shifted(step)}, by->origin) - here) / step;
         if (!(slope > 0)) return infinity;
@@ -481,7 +476,7 @@ std::optional<SurfaceChange> slide_for_cells(const Mesh& mesh, Vertex v, Region 
     downhill -= dot(downhill, normal) * normal;
     std::optional<SurfaceChange> best;
     for (Vec3 way : {to_middle, norm(downhill) > 0 ? first_step * nearest / norm(downhill) * downhill : Vec3{}})
-        for (int i = 0; i <= slide_halvings; ++i, way *= 0.5) {
+        for (int i = 0; i <= most_slide_halvings; ++i, way *= 0.5) {
             SurfaceChange tried = at_place(mesh, v, here + way);
             if (!(tried.worst_after < (1 - least_gain) * worst) || !agrees(mesh, star, here + way)) continue;
             if (!best || tried.worst_after < best->worst_after) best = std::move(tried);

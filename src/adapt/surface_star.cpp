@@ -4,16 +4,15 @@
 
 #include "adapt/surface_star.h"
 
+#include "adapt/constants.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace kropla {
 namespace {
 
-constexpr double sharp = 0.25;              // [-] cosine of the angle between normals, 75 degrees: more is an edge
-constexpr std::size_t unknowns = 6;         // of a quadric over a plane
-constexpr std::size_t least_points = 8;     // to fit it
-constexpr double least_pivot = 1e-6;        // [-] of the largest, scaled by the distances
+constexpr std::size_t unknowns = 6;  // of a quadric over a plane
 
 using Row = std::array<double, unknowns + 1>;  // and the right side
 
@@ -23,7 +22,7 @@ std::optional<double> first_unknown(std::array<Row, unknowns> m) {
     double largest = 0;
     for (std::size_t i = 0; i < unknowns; ++i) largest = std::max(largest, m[i][i]);
     for (std::size_t i = unknowns; i-- > 0;) {
-        if (!(m[i][i] > least_pivot * largest)) return std::nullopt;
+        if (!(m[i][i] > least_quadric_pivot * largest)) return std::nullopt;
         for (std::size_t k = 0; k < i; ++k) {
             const double factor = m[k][i] / m[i][i];
             for (std::size_t j = 0; j < i; ++j) m[k][j] -= factor * m[i][j];
@@ -110,7 +109,7 @@ std::vector<Vertex> two_rings(const Mesh& mesh, const SurfaceStar& star, Region 
 
 std::optional<double> height_of_quadric(const Mesh& mesh, const SurfaceStar& star, Region region) {
     const std::vector<Vertex> around = two_rings(mesh, star, region);
-    if (around.size() < least_points) return std::nullopt;
+    if (around.size() < least_quadric_points) return std::nullopt;
     const Vec3 here = mesh.position[star.vertex], normal = normalised(twice_area(star, mesh));
     const auto [e, f] = tangents(normal);
     double scale = 0;

@@ -1,6 +1,7 @@
 // Reading [[body]]: shape, motion and prism layer.
 #include "app/case_body.h"
 
+#include "app/body_state.h"
 #include "app/case_shape.h"
 #include "app/deformation.h"
 #include "app/local_size.h"
@@ -29,6 +30,11 @@ std::string read_name(const CaseTable& table, const std::vector<Body>& before) {
         table.refuse("name", fmt::format("{} is the name of body[{}] already; names must differ",
                                          toml_text(name), same - before.begin()));
     }
+    const auto alike = std::ranges::find(before, column_name(name), [](const Body& body) { return column_name(body.name); });
+    if (alike != before.end())
+        table.refuse("name", fmt::format("{} and {}, the name of body[{}], would both have the columns of {} in steps.csv; "
+                                         "letters, digits, \"_\", \".\" and \"-\" tell names apart",
+                                         toml_text(name), toml_text(alike->name), alike - before.begin(), column_name(name)));
     return name;
 }
 

@@ -23,6 +23,7 @@ std::vector<std::filesystem::path> vtu_files_in(const std::filesystem::path& fol
 }
 
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
+    if (!std::filesystem::exists(path)) throw FileError(path.string() + ": cannot be read: no such file or folder");
     std::vector<std::filesystem::path> files;
     if (std::filesystem::is_directory(path)) {
         const auto frames = path / "frames";  // of a run

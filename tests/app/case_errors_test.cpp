@@ -180,6 +180,9 @@ TEST(CaseErrors, Bodies) {
          "body[0].name (line 5): \"surroundings\" is the name of the rest of the box"},
         {"name = \"egg \\\"2\\\"\"", "name = \"droplet\"",
          "body[1].name (line 14): \"droplet\" is the name of body[0] already; names must differ"},
+        {"\"droplet\"", "\"egg__2_\"",
+         "body[1].name (line 14): \"egg \\\"2\\\"\" and \"egg__2_\", the name of body[0], would both have the columns of egg__2_ in "
+         "steps.csv; letters, digits, \"_\", \".\" and \"-\" tell names apart"},
         {"\"sphere\"", "\"cube\"",
          "body[0].shape (line 6): must be \"sphere\", \"ellipsoid\", \"slab\", \"cylinder\" or \"surface\", got \"cube\""},
         {"radius = 0.001", "radius = 0.001\nfile = \"a.stl\"", "body[0].file (line 9): is of shape = \"surface\""},

@@ -329,5 +329,26 @@ TEST(Run, ABodyComesDownToAHairAboveTheFloor) {
         EXPECT_NEAR(std::stod(volume), 4e-9 / 3 * std::numbers::pi, 1e-12 * 4.19e-9);
 }
 
+// At a fifth of a surface size between the spheres, and half of that between the polyhedra, which stand out of them.
+TEST(Run, TwoBodiesPassAtAFifthOfASurfaceSize) {
+    const TemporaryFolder folder;
+    const auto body = [](const std::string& name, const std::string& x, const std::string& z, const std::string& goes) {
+        return "[[body]]\nname = \"" + name + "\"\nshape = \"sphere\"\nradius = 0.001\ncentre = [" + x + ", 0, " + z + "]\n" +
+               "[body.motion]\nz = \"" + goes + "\"\n[heat.region." + name +
+               "]\nconductivity = 35\ndensity = 7000\nspecific_heat = 800\ninitial = 2400\n";
+    };
+    write(folder.path / "a.toml",
+          "[domain]\nmin = [-0.003, -0.003, 0.0]\nmax = [0.003, 0.003, 0.008]\n" +
+              body("a", "-0.001", "0.0044", "-t") + body("b", "0.00106", "0.0036", "t") +
+              "[heat.region.surroundings]\nconductivity = 0.02\ndensity = 1.6\nspecific_heat = 520\ninitial = 300\n"
+              "[size]\nsurface = 3e-4\ngrowth = 0.3\nfar = 1e-3\n[time]\nend = 5e-4\nsteps = 4\n");
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    EXPECT_EQ(it.err, "");
+    const auto columns = lasting_columns(folder.path / "d");
+    for (const std::string& ratio : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(ratio), 6.6);
+    for (const std::string& error : columns.at("energy_transfer_error")) EXPECT_LE(std::abs(std::stod(error)), 1e-12);
+}
+
 }  // namespace
 }  // namespace kropla
