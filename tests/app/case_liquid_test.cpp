@@ -127,7 +127,7 @@ TEST(CaseLiquid, OnAFloorIsReadAndWrittenAgain) {
         const Case it = parse_case(sessile_case(contact, floor), "case.toml");
         const auto& angle = it.flow->options.contact.at(0).at(4);
         EXPECT_EQ(angle.has_value(), it.flow->options.faces[4].kind == FlowFace::Kind::slip);
-        if (angle) EXPECT_EQ(*angle, 60);
+        EXPECT_EQ(angle.value_or(60), 60);
         EXPECT_EQ((it.domain.bodies[0].pinned >> 4 & 1u) != 0, !angle.has_value());
         const std::string written = to_toml(it);
         EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
