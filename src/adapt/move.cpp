@@ -234,12 +234,13 @@ void keep_with_flow(const Mesh& mesh, const Box& box, const Body& body, const Tr
 /// The volume that a surface sweeps from places to others, outwards: where it ends on a face of the box, it goes along that.
 double swept_volume(const BodySurface& surface, const Array<Vertex, Vec3>& from, const Array<Vertex, Vec3>& to) {
     double sum = 0;
-    for (const auto& [a, b, c] : surface.triangles) {
+    for (const std::array<Vertex, 3>& corner : surface.triangles) {
         const auto twice_area = [&](double done) {
-            const auto at = [&](Vertex v) { return from[v] + done * (to[v] - from[v]); };
-            return cross(at(b) - at(a), at(c) - at(a));
+            const auto place = [&](Vertex v) { return from[v] + done * (to[v] - from[v]); };
+            return cross(place(corner[1]) - place(corner[0]), place(corner[2]) - place(corner[0]));
         };
-        const Vec3 gone = to[a] - from[a] + to[b] - from[b] + to[c] - from[c];
+        Vec3 gone;
+        for (Vertex v : corner) gone += to[v] - from[v];
         sum += dot(gone, twice_area(0) + 4 * twice_area(0.5) + twice_area(1)) / 36;  // Simpson's rule, which is exact
     }
     return sum;
