@@ -163,7 +163,6 @@ inline constexpr double least_quadric_pivot = 1e-6;
 inline constexpr int even_shift_steps = 4;
 inline constexpr int most_shift_steps = 8;
 inline constexpr double shift_difference = 1e-3;
-
 /// [good_enough] for the sake of worse cells triangles of a liquid's surface are changed. Smaller: more changes, each of which
 /// disturbs the flow. Larger: worse cells there. Chosen.
 inline constexpr double poor_at_liquids = 1.1;

@@ -85,7 +85,7 @@ void grade(const TriangulatedSurface& surface, std::vector<double>& size) {
                 const std::size_t a = as_size(triangle[i]), b = as_size(triangle[(i + 1) % 3]);
                 const double rise = steepest_growth * distance(surface.points()[a], surface.points()[b]);
                 for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
-                    if (size[to] <= size[from] + rise) continue;
+                    if (!(size[to] > size[from] + rise)) continue;
                     size[to] = size[from] + rise;
                     lower = true;
                 }
