@@ -298,7 +298,7 @@ private:
     }
 
     Answer solve_flow(const StepToSolve& step, FlowState& flow, SolvedFlow& solved) {
-        constexpr double of_mass = 1e-6;  // [-] a hundredth of what forces ask for, for the sake of the mass
+        constexpr double of_forces = 1e-4;  // [-] of what changes in a step
         constexpr double let_pass = 1.1;  // [-] of the Courant number: no step is taken back for a little
         report.rounds = step.round;
         if (settled_) {
@@ -307,7 +307,7 @@ private:
         }
         FlowOptions options = it_.flow->options;
         options.bodies = surface_velocities(step.dt);
-        options.tolerance = of_mass;
+        options.tolerance = of_forces;
         flow = flow_state(it_, state_.fields);
         solved.density_before = flow.density;
         try {

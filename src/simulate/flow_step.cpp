@@ -25,8 +25,7 @@ namespace {
 
 constexpr double gamma = 1 - 1 / std::numbers::sqrt2;
 constexpr double margin = 0.3;       // [-] of what is wanted of the residual: systems are solved so well, and
-constexpr double forcing = 1e-4;     // [-] of the residual, at the best: a step's first guess is near; and
-constexpr double steady_forcing = 1e-2;  // [-] of that towards a steady state, which is far
+constexpr double forcing = 1e-2;     // [-] of the residual, at the best: a derivative that is kept brings no more
 constexpr double stagnation = 0.5;   // [-] of the residual: a pass that leaves more got nowhere, and
 constexpr double rounding = 1e-12;   // [-] of the terms of the residual is where that is no failure
 
@@ -250,7 +249,7 @@ private:
         const bool is_solution = left <= rounding * solver_.size_of_terms(unknown());  // as it is
         for (int pass = 1; left > wanted && !is_solution; ++pass) {
             if (pass > options_.most_passes || !std::isfinite(left)) give_up(pass, left / largest_left_);
-            add(correction(stage, std::max(margin * wanted / left, per_time > 0 ? forcing : steady_forcing)));
+            add(correction(stage, std::max(margin * wanted / left, forcing)));
             ++passes_;
             assemble(stage, false);
             const double before = left;
@@ -264,6 +263,7 @@ private:
             left = solver_.size(system_.residual);
         }
         if (left > 0) error_ = left / largest_left_;
+        if (!conditions_.closed) let_rest_out(position);
         if (masses_) note_passed(at.weight, position);
         dissipated_ += at.weight * dt_ * dissipation(current_, cells_, position, material_, guess_.velocity);
         surfaces_.end(guess_.velocity, at.weight * dt_);
@@ -348,6 +348,27 @@ private:
         MPI_Allreduce(&mine, &net, 1, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
         for (std::size_t r = 0; r < rows().count(); ++r)
             system_.residual[block_size * r + 3] -= net * share_of_volume_[static_cast<std::size_t>(rows().first_row) + r];
+    }
+
+    /// What is left of the residual of the whole volume, goes out through open faces, at one velocity along their normals:
+    /// what passes the boundary is balanced to rounding however well the stage is solved. As OpenFOAM's adjustPhi.
+    void let_rest_out(const Array<Vertex, Vec3>& position) {
+        const auto density = [&](Vertex v) { return masses_ ? material_[expanding_].densities[v] : 1.0; };
+        double mine = 0, rest = 0;
+        for (std::size_t r = 0; r < rows().count(); ++r) mine += density(vertex_of(r)) * system_.residual[block_size * r + 3];
+        MPI_Allreduce(&mine, &rest, 1, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
+        Array<Vertex, Vec3> outward(position.size());
+        for (std::size_t face = 0; face < 6; ++face) {
+            const auto axis = static_cast<int>(face / 2);
+            for (const auto& facet : boundary_.faces[face])
+                for (Vertex v : facet)
+                    if (conditions_.open[face] && !conditions_.fixed[v][face / 2]) outward[v][axis] = face % 2 == 0 ? -1 : 1;
+        }
+        double passing = 0;
+        for (const auto& facets : boundary_.faces)
+            for_each_flux(facets, position, outward, [&](Vertex v, double flux) { passing += density(v) * flux; });
+        if (!(passing > 0)) return;
+        for (Vertex v : numbering().vertex) guess_.velocity[v] -= rest / passing * outward[v];
     }
 
     void find_shares(const Array<Vertex, Vec3>& position) {

@@ -129,16 +129,17 @@ protected:
     }
 };
 
-TEST_F(AroundABody, MassIsKept) {
+TEST_F(AroundABody, MassIsKeptHoweverWellItIsSolved) {
+    flow.tolerance = 1e-2;
     const auto mass = [&](const Mesh& mesh) {
         return energy(mesh, {.regions = std::vector<HeatRegion>(2)}, state.density, Region(0));
     };
     double held = mass(before);
     for (int step = 1; step <= 3; ++step) {
         step_to(step, wave(place(step), step));
-        EXPECT_LT(std::abs(report.mass_error), 1e-11);
+        EXPECT_LT(std::abs(report.mass_error), 1e-15);
         const double now = mass(current);
-        EXPECT_NEAR(now - held, -0.1 * sum_of(report.through), 1e-11);
+        EXPECT_NEAR(now - held, -0.1 * sum_of(report.through), 1e-14);
         EXPECT_GT(std::abs(now - held), 1e-3);
         held = now;
         before = current;
