@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace kropla {
@@ -50,31 +51,58 @@ void PointGrid::file(std::int32_t entry) {
     e.next = std::exchange(slot, entry);
 }
 
-bool PointGrid::any_within(const Vec3& x, double radius, double least, double greatest) const {
+template <class Visit>
+bool PointGrid::visit_within(const Vec3& x, double radius, double least, double greatest, const Visit& visit) const {
     if (!(radius > 0)) return false;
     const int lowest = least > 0 ? std::max(lowest_level_, std::ilogb(least)) : lowest_level_;
     const int highest = std::min(highest_level_, std::ilogb(greatest));
     for (int level = highest; level >= lowest; --level)
-        if (any_within_at(level, x, radius)) return true;
+        if (visit_within_at(level, x, radius, visit)) return true;
     return false;
 }
 
-bool PointGrid::any_within_at(int level, const Vec3& x, double radius) const {
-    const double width = cell_width(level);
+template <class Visit>
+bool PointGrid::visit_within_at(int level, const Vec3& x, double radius, const Visit& visit) const {
+    const double width = cell_width(level), squared = radius * radius;
     std::array<std::int64_t, 3> first = {}, last = {};
     for (int axis = 0; axis < 3; ++axis) {
         first[static_cast<std::size_t>(axis)] = cell_number(x[axis] - radius, width);
         last[static_cast<std::size_t>(axis)] = cell_number(x[axis] + radius, width);
     }
-    for (std::int64_t i = first[0]; i <= last[0]; ++i)
-        for (std::int64_t j = first[1]; j <= last[1]; ++j)
-            for (std::int64_t k = first[2]; k <= last[2]; ++k)
+    const auto squared_gap = [&](int axis, std::int64_t cell) {
+        constexpr double rounding = 1e-9;  // [-] of the width
+        const double begin = static_cast<double>(cell) * width - x[axis];
+        const double gap = std::max({begin, -begin - width, 0.0}) - rounding * width;
+        return gap > 0 ? gap * gap : 0;
+    };
+    for (std::int64_t i = first[0]; i <= last[0]; ++i) {
+        const double gap_i = squared_gap(0, i);
+        for (std::int64_t j = first[1]; j <= last[1]; ++j) {
+            const double gap_ij = gap_i + squared_gap(1, j);
+            if (gap_ij > squared) continue;
+            for (std::int64_t k = first[2]; k <= last[2]; ++k) {
+                if (gap_ij + squared_gap(2, k) > squared) continue;
                 for (std::int32_t e = slots_[slot_hash(level, i, j, k) & (slots_.size() - 1)]; e >= 0;) {
                     const Entry& entry = entries_[static_cast<std::size_t>(e)];
-                    if (entry.level == level && squared_norm(entry.place - x) < radius * radius) return true;
+                    if (entry.level == level && squared_norm(entry.place - x) < squared && visit(entry.place)) return true;
                     e = entry.next;
                 }
+            }
+        }
+    }
     return false;
+}
+
+bool PointGrid::any_within(const Vec3& x, double radius, double least, double greatest) const {
+    return visit_within(x, radius, least, greatest, [](const Vec3&) { return true; });
+}
+
+void PointGrid::find_within(const Vec3& x, double radius, double least, double greatest, std::vector<Vec3>& found) const {
+    found.clear();
+    visit_within(x, radius, least, greatest, [&](const Vec3& place) {
+        found.push_back(place);
+        return false;
+    });
 }
 
 namespace {
@@ -111,24 +139,61 @@ void split_cell(const Cell& cell, std::vector<Cell>& into) {
     into.insert(into.end(), parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-bool is_crowded(const SampleRule& rule, const PointGrid& taken, const Vec3& x, double radius,
-                double spacing) {
-    const double change = rule.spacing_slope * radius;
-    return taken.any_within(x, radius, spacing - change, spacing + change);
+bool is_crowded(const SampleRule& rule, const PointGrid& taken, const Vec3& x, double spacing) {
+    const double change = rule.spacing_slope * spacing;
+    return taken.any_within(x, spacing, spacing - change, spacing + change);
 }
 
 /// No point of the cell could be accepted: for want of clearance, or since one neighbour is too near to all
-/// of it. Says yes only where that is sure.
-bool is_covered(const SampleRule& rule, const PointGrid& taken, Cell& cell) {
+/// of it. Says yes only where that is sure. `near(radius, spacing)`: is one nearer to the centre than that, among points
+/// that stand at such a spacing?
+template <class Near>
+bool is_covered(const SampleRule& rule, Cell& cell, const Near& near) {
     const double reach = norm(cell.half), at_least = least_spacing(rule, cell, cell.centre);
-    const auto crowded = [&](double spacing) {
-        return is_crowded(rule, taken, cell.centre, spacing - (1 + rule.spacing_slope) * reach, spacing);
-    };
+    const auto crowded = [&](double spacing) { return near(spacing - (1 + rule.spacing_slope) * reach, spacing); };
     if (at_least > 0 && crowded(at_least)) return true;
     if (rule.clearance(cell.centre) + rule.clearance_slope * reach < 0) return true;
     cell.spacing = rule.spacing(cell.centre);
     cell.asked_at = cell.centre;
     return crowded(cell.spacing);
+}
+
+bool is_covered(const SampleRule& rule, const PointGrid& taken, Cell& cell) {
+    return is_covered(rule, cell, [&](double radius, double spacing) {
+        const double change = rule.spacing_slope * radius;
+        return taken.any_within(cell.centre, radius, spacing - change, spacing + change);
+    });
+}
+
+/// The points that stand around a place: what cells beside each other are asked by.
+struct Around {
+    Vec3 centre;
+    double radius = 0;
+    std::vector<Vec3> places;
+};
+
+/// Has all in it that could cover the cell, or one of its parts.
+void look_around(const SampleRule& rule, const PointGrid& taken, const Cell& cell, Around& around) {
+    constexpr double for_others = 4;  // of the half diagonal of a cell: those beside it
+    const double reach = norm(cell.half);
+    const double most = cell.spacing + rule.spacing_slope * (distance(cell.centre, cell.asked_at) + reach);
+    if (distance(cell.centre, around.centre) + most <= around.radius) return;
+    around.centre = cell.centre;
+    around.radius = most + for_others * reach;
+    const double change = rule.spacing_slope * (around.radius + distance(cell.centre, cell.asked_at));
+    taken.find_within(cell.centre, around.radius, cell.spacing - change, cell.spacing + change, around.places);
+}
+
+/// The point that covers a cell is the first to be looked at for the next.
+bool is_covered(const SampleRule& rule, Around& around, Cell& cell) {
+    return is_covered(rule, cell, [&](double radius, double) {
+        if (!(radius > 0)) return false;
+        const auto found = std::ranges::find_if(
+            around.places, [&](const Vec3& place) { return squared_norm(place - cell.centre) < radius * radius; });
+        if (found == around.places.end()) return false;
+        std::iter_swap(around.places.begin(), found);
+        return true;
+    });
 }
 
 /// The cells in which to begin: no larger than the spacing there, and not covered.
@@ -146,8 +211,14 @@ std::vector<Cell> first_cells(const Box& room, const SampleRule& rule, const Poi
     return fine;
 }
 
-void shuffle_cells(std::vector<Cell>& cells, Random& random) {
-    for (std::size_t i = cells.size(); i > 1; --i) std::swap(cells[i - 1], cells[random.below(i)]);
+/// Cells that are open still, beside each other where they are so in space, and the order in which they are thrown at.
+struct OpenCells {
+    std::vector<Cell> cells;
+    std::vector<std::uint32_t> order;
+};
+
+void shuffle(std::vector<std::uint32_t>& order, Random& random) {
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
 }
 
 /// A random point of the cell, kept within the room against rounding.
@@ -160,20 +231,30 @@ Vec3 random_point(const Cell& cell, const Box& room, Random& random) {
     return x;
 }
 
-/// The parts of the cells that are open still and wide enough to matter.
-std::vector<Cell> open_parts(std::vector<Cell>& cells, const SampleRule& rule, const PointGrid& taken,
-                             const Watch* watch) {
+/// The parts of the cells that are open still and wide enough to matter, in their order. All cells were asked about before.
+OpenCells open_parts(OpenCells& open, const SampleRule& rule, const PointGrid& taken, const Watch* watch) {
     constexpr double narrowest_gap = 1e-4;  // of the spacing
-    std::vector<Cell> parts, open;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
+    OpenCells left;
+    std::vector<Cell> parts;
+    Around around;
+    std::vector<std::uint32_t> first(open.cells.size() + 1, 0);  // of the parts of each
+    for (std::size_t i = 0; i < open.cells.size(); ++i) {
         if (i % cells_at_once == 0) heed(watch);
-        if (is_covered(rule, taken, cells[i])) continue;
-        parts.clear();
-        split_cell(cells[i], parts);
-        for (Cell& part : parts)
-            if (!is_covered(rule, taken, part) && norm(part.half) > narrowest_gap * part.spacing) open.push_back(part);
+        Cell& cell = open.cells[i];
+        look_around(rule, taken, cell, around);
+        if (!is_covered(rule, around, cell)) {
+            parts.clear();
+            split_cell(cell, parts);
+            for (Cell& part : parts)
+                if (!is_covered(rule, around, part) && norm(part.half) > narrowest_gap * part.spacing)
+                    left.cells.push_back(part);
+        }
+        first[i + 1] = static_cast<std::uint32_t>(left.cells.size());
     }
-    return open;
+    left.order.reserve(left.cells.size());
+    for (const std::uint32_t i : open.order)
+        for (std::uint32_t part = first[i]; part < first[i + 1]; ++part) left.order.push_back(part);
+    return left;
 }
 
 }  // namespace
@@ -182,17 +263,21 @@ std::vector<Vec3> fill_room(const Box& room, const SampleRule& rule, PointGrid& 
                             const Watch* watch) {
     constexpr std::size_t most_throws = 1000;  // per cell to begin with; a few dozen do
     std::vector<Vec3> found;
-    std::vector<Cell> open = first_cells(room, rule, taken, watch);
-    for (std::size_t left = most_throws * open.size(); !open.empty() && open.size() <= left;) {
-        left -= open.size();
-        shuffle_cells(open, random);
-        for (std::size_t i = 0; i < open.size(); ++i) {
+    OpenCells open{first_cells(room, rule, taken, watch), {}};
+    open.order.resize(open.cells.size());
+    std::iota(open.order.begin(), open.order.end(), 0u);
+    for (std::size_t left = most_throws * open.cells.size(); !open.cells.empty() && open.cells.size() <= left;) {
+        left -= open.cells.size();
+        shuffle(open.order, random);
+        for (std::size_t i = 0; i < open.order.size(); ++i) {
             if (i % cells_at_once == 0) heed(watch);
-            const Vec3 x = random_point(open[i], room, random);
-            const double at_least = least_spacing(rule, open[i], x);
-            if (at_least > 0 && is_crowded(rule, taken, x, at_least, at_least)) continue;
+            const Cell& cell = open.cells[open.order[i]];
+            __builtin_prefetch(&open.cells[open.order[std::min(i + 8, open.order.size() - 1)]]);  // by chance, far apart
+            const Vec3 x = random_point(cell, room, random);
+            const double at_least = least_spacing(rule, cell, x);
+            if (at_least > 0 && is_crowded(rule, taken, x, at_least)) continue;
             const double spacing = rule.spacing(x);
-            if (rule.clearance(x) < 0 || is_crowded(rule, taken, x, spacing, spacing)) continue;
+            if (rule.clearance(x) < 0 || is_crowded(rule, taken, x, spacing)) continue;
             taken.insert(x, spacing);
             found.push_back(x);
         }

@@ -21,6 +21,8 @@ public:
     /// Is a point nearer to `x` than `radius`? Points filed with a spacing outside [least, greatest] are not
     /// seen.
     [[nodiscard]] bool any_within(const Vec3& x, double radius, double least, double greatest) const;
+    /// All of them.
+    void find_within(const Vec3& x, double radius, double least, double greatest, std::vector<Vec3>& found) const;
 
 private:
     struct Entry {
@@ -29,7 +31,11 @@ private:
         std::int32_t next;  // in the same slot, or -1
     };
     void file(std::int32_t entry);
-    [[nodiscard]] bool any_within_at(int level, const Vec3& x, double radius) const;
+    /// Until `visit(place)` says that it is enough; did it?
+    template <class Visit>
+    bool visit_within(const Vec3& x, double radius, double least, double greatest, const Visit& visit) const;
+    template <class Visit>
+    bool visit_within_at(int level, const Vec3& x, double radius, const Visit& visit) const;
 
     std::vector<Entry> entries_;
     std::vector<std::int32_t> slots_ = std::vector<std::int32_t>(64, -1);
