@@ -20,7 +20,9 @@ SEES = {
     "welding": ["simulate", "domain"],
     "io": ["mesh", "simulate"],
     "report": ["io"],
-    "app": ["base", "mesh", "domain", "generate", "adapt", "transfer", "step", "simulate", "welding", "io", "report"],
+    "motion": ["domain", "simulate"],
+    "case": ["motion", "step", "io"],
+    "app": ["base", "mesh", "domain", "generate", "adapt", "transfer", "step", "simulate", "welding", "io", "report", "case"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"|<kropla/)([^">]+)[">]')
 HEADERS = re.compile(r"list\(APPEND KROPLA_\w+_HEADERS([^)]*)\)")

@@ -54,11 +54,4 @@ std::vector<BodyState> body_states(const Domain& domain, const Mesh& mesh, const
     return states;
 }
 
-std::string column_name(const std::string& body) {
-    std::string name = body;
-    const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-'; };
-    std::ranges::replace_if(name, [&](char c) { return !is_plain(static_cast<unsigned char>(c)); }, '_');
-    return name;
-}
-
 }  // namespace kropla

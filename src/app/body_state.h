@@ -19,7 +19,4 @@ struct BodyState {
 [[nodiscard]] std::vector<BodyState> body_states(const Domain& domain, const Mesh& mesh,
                                                  const Array<Vertex, double>* temperature);
 
-/// The name of a body as columns have it: letters, digits and `_.-`; anything else becomes `_`.
-[[nodiscard]] std::string column_name(const std::string& body);
-
 }  // namespace kropla

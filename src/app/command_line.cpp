@@ -1,6 +1,6 @@
 #include "app/command_line.h"
 
-#include "app/case_table.h"
+#include "case/table.h"
 #include <kropla/base/error.h>
 
 #include <fmt/format.h>

@@ -3,14 +3,14 @@
 
 #include "app/body_sizes.h"
 #include "app/check.h"
-#include "app/case_heat.h"
+#include "case/heat.h"
 #include "app/check_files.h"
 #include "app/command_line.h"
 #include "app/first_mesh.h"
-#include "app/foresight.h"
+#include "case/foresight.h"
 #include "app/interrupt.h"
 #include "app/mesh_commands.h"
-#include "app/new_case.h"
+#include "case/new_case.h"
 #include "app/progress.h"
 #include "app/run.h"
 #include "app/step.h"
@@ -46,24 +46,24 @@ struct MeshOptions {
 };
 
 /// In VTU with the quality of its cells; in other formats with the names of bodies and faces.
-void write_initial(const Case& it, const Mesh& mesh, const std::filesystem::path& out, const Watch* watch) {
+void write_initial(const Case& given, const Mesh& mesh, const std::filesystem::path& out, const Watch* watch) {
     if (out.extension() == ".vtu") return write_vtu(out, mesh, {}, watch);
     Names regions = {{surroundings.value, "surroundings"}}, patches;
-    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body)
-        regions[region_of_body(body).value] = it.domain.bodies[body].name;
+    for (std::size_t body = 0; body < given.domain.bodies.size(); ++body)
+        regions[region_of_body(body).value] = given.domain.bodies[body].name;
     for (int face = 0; face < box_faces; ++face) patches[face + 1] = face_keys[as_size(face)];
     write_mesh_file(out, cells_of(mesh, std::move(regions), std::move(patches)), watch);
 }
 
 /// The initial mesh, written.
-Mesh written_mesh_of(const Case& it, const std::filesystem::path& out, Watch& watch) {
+Mesh written_mesh_of(const Case& given, const std::filesystem::path& out, Watch& watch) {
     Progress progress;
     if (progress.on_terminal())  // else what is printed is the result alone
         watch.progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
     try {
-        warn(foresee(it, &watch));
-        Mesh mesh = first_mesh(it, &watch);
-        write_initial(it, mesh, out, &watch);
+        warn(foresee(given, &watch));
+        Mesh mesh = first_mesh(given, &watch);
+        write_initial(given, mesh, out, &watch);
         return mesh;
     } catch (const Interrupted&) {
         throw Interrupted("interrupted while the initial mesh was made; nothing was written");
@@ -76,13 +76,13 @@ int write_initial_mesh(const MeshOptions& options) {
                                     options.out.string(), mesh_extensions));
     Watch watch;
     const CatchInterrupts catching(watch);
-    const Case it = read_case(options.case_file, options.settings);
-    const Mesh mesh = written_mesh_of(it, options.out, watch);
+    const Case given = read_case(options.case_file, options.settings);
+    const Mesh mesh = written_mesh_of(given, options.out, watch);
     const QualitySummary quality = summarise_quality(mesh);
     fmt::print("{}: {} tets, {} vertices, worst R/r {:.2f}, dihedral angles {:.1f} to {:.1f} degrees\n",
                options.out.string(), quality.tets, quality.vertices, quality.max_aspect_ratio,
                quality.min_dihedral, quality.max_dihedral);
-    fmt::print("{}", describe(body_sizes(it.domain, mesh)));
+    fmt::print("{}", describe(body_sizes(given.domain, mesh)));
     return done;
 }
 
@@ -307,9 +307,9 @@ std::string too_much(const CLI::App& app, const Request& request) {
     if (!app.got_subcommand("run") && !app.got_subcommand("mesh")) return "not enough memory";
     try {
         const auto& settings = app.got_subcommand("run") ? request.run.settings : request.mesh.settings;
-        const Case it = read_case(subject(app, request), settings);
+        const Case given = read_case(subject(app, request), settings);
         return fmt::format("{}: not enough memory for about {:.1e} tets; larger size.surface and size.far take less",
-                           subject(app, request).string(), estimate_tets(it.domain));
+                           subject(app, request).string(), estimate_tets(given.domain));
     } catch (const std::exception&) {
         return "not enough memory";
     }

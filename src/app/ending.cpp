@@ -1,7 +1,7 @@
 // The end of a run that did not come to its end.
 #include "app/ending.h"
 
-#include "app/case_table.h"
+#include "case/table.h"
 #include "io/file.h"
 #include <kropla/io/vtk.h>
 #include "report/page.h"

@@ -12,10 +12,10 @@
 
 namespace kropla {
 
-Mesh first_mesh(const Case& it, const Watch* watch) {
-    const AdaptOptions options = adapt_options(it, watch);
-    if (!it.mesh) return initial_mesh(it.domain, options);
-    Mesh mesh = *it.mesh->mesh;
+Mesh first_mesh(const Case& given, const Watch* watch) {
+    const AdaptOptions options = adapt_options(given, watch);
+    if (!given.mesh) return initial_mesh(given.domain, options);
+    Mesh mesh = *given.mesh->mesh;
     heed(watch, "improving cells", 0);
     (void)improve_mesh(mesh, options);
     const QualitySummary quality = summarise_quality(mesh);
@@ -23,7 +23,7 @@ Mesh first_mesh(const Case& it, const Watch* watch) {
     const Vec3 place = centroid(mesh, quality.worst);
     const std::string why = fmt::format(
         "domain.mesh = {}: a cell at {} has R/r {:.4g}, limit {:g}, and cannot be improved with the surfaces kept as they are",
-        it.mesh->file, place_of(mesh, quality.worst), quality.max_aspect_ratio, options.floor);
+        given.mesh->file, place_of(mesh, quality.worst), quality.max_aspect_ratio, options.floor);
     throw StuckError(why, place, std::move(mesh));
 }
 

@@ -1,6 +1,6 @@
 #include "app/flow_fields.h"
 
-#include "app/case_heat.h"
+#include "case/heat.h"
 #include "app/species_fields.h"
 #include "simulate/cells.h"
 #include "simulate/step_mean.h"
@@ -17,65 +17,65 @@ constexpr std::array<const char*, 3> components = {"velocity_x", "velocity_y", "
 
 }  // namespace
 
-std::size_t place_of_flow(const Case& it) { return (it.heat ? 1 : 0) + species_fields(it).size(); }
+std::size_t place_of_flow(const Case& given) { return (given.heat ? 1 : 0) + species_fields(given).size(); }
 
-std::size_t count_flow_fields(const Case& it) {
-    const std::size_t liquids = liquids_of(it).size();
-    return (expands(it) ? 5 : 4) + (liquids > 0 ? liquids + 3 : 0);
+std::size_t count_flow_fields(const Case& given) {
+    const std::size_t liquids = liquids_of(given).size();
+    return (expands(given) ? 5 : 4) + (liquids > 0 ? liquids + 3 : 0);
 }
 
-std::vector<Region> liquids_of(const Case& it) {
+std::vector<Region> liquids_of(const Case& given) {
     std::vector<Region> liquids;
-    for (std::size_t body = 0; body < it.liquid.size(); ++body)
-        if (it.liquid[body] != 0) liquids.push_back(region_of_body(body));
+    for (std::size_t body = 0; body < given.liquid.size(); ++body)
+        if (given.liquid[body] != 0) liquids.push_back(region_of_body(body));
     return liquids;
 }
 
-std::vector<Carrying> carrying_of_flow(const Case& it) {
-    const std::vector<Region> liquids = liquids_of(it);
-    std::vector<Carrying> how(count_flow_fields(it), {.only = Region(0), .limit = false});
-    if (expands(it)) how[4].limit = true;  // the density has no new extrema
+std::vector<Carrying> carrying_of_flow(const Case& given) {
+    const std::vector<Region> liquids = liquids_of(given);
+    std::vector<Carrying> how(count_flow_fields(given), {.only = Region(0), .limit = false});
+    if (expands(given)) how[4].limit = true;  // the density has no new extrema
     if (liquids.empty()) return how;
     Carrying of_all{.limit = false};  // momentum is kept
-    for (const auto& region : it.flow->options.regions) of_all.weight.push_back(region ? region->density(0) : 1);
+    for (const auto& region : given.flow->options.regions) of_all.weight.push_back(region ? region->density(0) : 1);
     for (std::size_t k = 0; k < 3; ++k) how[k] = how[how.size() - 3 + k] = of_all;
     for (std::size_t k = 0; k < liquids.size(); ++k) how[how.size() - 3 - liquids.size() + k].only = liquids[k];
     return how;
 }
 
-Array<Vertex, Vec3> flow_rate(const Case& it, std::span<const NodalField> fields) {
-    const auto rate = fields.subspan(place_of_flow(it) + count_flow_fields(it) - 3, 3);
+Array<Vertex, Vec3> flow_rate(const Case& given, std::span<const NodalField> fields) {
+    const auto rate = fields.subspan(place_of_flow(given) + count_flow_fields(given) - 3, 3);
     Array<Vertex, Vec3> all(rate[0].values.size());
     for (Vertex v : all.indices()) all[v] = {rate[0].values[v], rate[1].values[v], rate[2].values[v]};
     return all;
 }
 
-void keep_flow_rate(const Case& it, const Array<Vertex, Vec3>& rate, std::span<NodalField> fields) {
-    const auto kept = fields.subspan(place_of_flow(it) + count_flow_fields(it) - 3, 3);
+void keep_flow_rate(const Case& given, const Array<Vertex, Vec3>& rate, std::span<NodalField> fields) {
+    const auto kept = fields.subspan(place_of_flow(given) + count_flow_fields(given) - 3, 3);
     for (Vertex v : rate.indices())
         for (int axis = 0; axis < 3; ++axis) kept[as_size(axis)].values[v] = rate[v][axis];
 }
 
-bool expands(const Case& it) { return it.flow && !it.flow->options.regions[0]->density.constant(); }
+bool expands(const Case& given) { return given.flow && !given.flow->options.regions[0]->density.constant(); }
 
-std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it, const Array<Vertex, double>& temperature) {
+std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& given, const Array<Vertex, double>& temperature) {
     std::vector<NodalField> fields;
     const std::size_t vertices = mesh.position.size();
     for (const char* name : components) fields.push_back({name, "m/s", Array<Vertex, double>(vertices, 0.0)});
     fields.push_back({"pressure", "Pa", Array<Vertex, double>(vertices, 0.0)});
-    if (expands(it)) {
+    if (expands(given)) {
         fields.push_back({"density", "kg/m^3", Array<Vertex, double>(vertices, 0.0)});
-        for (Vertex v : mesh.position.indices()) fields.back().values[v] = it.flow->options.regions[0]->density(temperature[v]);
+        for (Vertex v : mesh.position.indices()) fields.back().values[v] = given.flow->options.regions[0]->density(temperature[v]);
     }
-    const std::vector<Region> liquids = liquids_of(it);
+    const std::vector<Region> liquids = liquids_of(given);
     for (Region liquid : liquids)
-        fields.push_back({"pressure_" + region_name(it.domain, as_size(liquid.value)), "Pa", Array<Vertex, double>(vertices, 0.0)});
+        fields.push_back({"pressure_" + region_name(given.domain, as_size(liquid.value)), "Pa", Array<Vertex, double>(vertices, 0.0)});
     for (const char* name : {"rate_x", "rate_y", "rate_z"})
         if (!liquids.empty()) fields.push_back({name, "m/s^2", Array<Vertex, double>(vertices, 0.0)});
-    for (std::size_t r = 0; r < it.flow->initial.size(); ++r) {
-        const std::string key = fmt::format("flow.region.{}.initial", region_name(it.domain, r));
+    for (std::size_t r = 0; r < given.flow->initial.size(); ++r) {
+        const std::string key = fmt::format("flow.region.{}.initial", region_name(given.domain, r));
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Quantity& start = it.flow->initial[r][axis];
+            const Quantity& start = given.flow->initial[r][axis];
             if (!start) continue;
             for_each_cell(living_cells(mesh, Region(r)), [&](const auto& cell) {
                 for (Vertex v : cell_vertices(mesh, cell)) fields[axis].values[v] = value_at(start, mesh.position[v], 0, key);
@@ -85,12 +85,12 @@ std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& it, const Arr
     return fields;
 }
 
-std::vector<NodalField> shown_pressures(const Mesh& mesh, const Case& it, std::span<const NodalField> fields) {
-    FlowState flow = flow_state(it, fields);
+std::vector<NodalField> shown_pressures(const Mesh& mesh, const Case& given, std::span<const NodalField> fields) {
+    FlowState flow = flow_state(given, fields);
     std::vector<NodalField> shown = {{"pressure", "Pa", std::move(flow.pressure)}};
     if (flow.within.empty()) return shown;
     NodalField within{"pressure_within", "Pa", shown[0].values};
-    for (Region liquid : liquids_of(it))
+    for (Region liquid : liquids_of(given))
         for_each_cell(living_cells(mesh, liquid), [&](const auto& cell) {
             for (Vertex v : cell_vertices(mesh, cell)) within.values[v] = flow.within[as_size(liquid.value - 1)][v];
         });
@@ -104,11 +104,11 @@ std::vector<NodalField> shown_pressures(const Mesh& mesh, const Case& it, std::s
     return shown;
 }
 
-CellField mean_pressure(const Mesh& mesh, const Case& it, std::span<const NodalField> fields) {
-    const FlowState flow = flow_state(it, fields);
+CellField mean_pressure(const Mesh& mesh, const Case& given, std::span<const NodalField> fields) {
+    const FlowState flow = flow_state(given, fields);
     CellField means{"pressure_mean", "Pa", {}};
     const auto add = [&](Region region, const auto& vertices) {
-        const bool in_liquid = region.value > 0 && it.liquid[as_size(region.value - 1)] != 0;
+        const bool in_liquid = region.value > 0 && given.liquid[as_size(region.value - 1)] != 0;
         const Array<Vertex, double>& pressure = in_liquid ? flow.within[as_size(region.value - 1)] : flow.pressure;
         double sum = 0;
         for (Vertex v : vertices) sum += pressure[v];
@@ -120,43 +120,27 @@ CellField mean_pressure(const Mesh& mesh, const Case& it, std::span<const NodalF
     return means;
 }
 
-FlowState flow_state(const Case& it, std::span<const NodalField> fields) {
-    const auto flow = fields.subspan(place_of_flow(it), count_flow_fields(it));
+FlowState flow_state(const Case& given, std::span<const NodalField> fields) {
+    const auto flow = fields.subspan(place_of_flow(given), count_flow_fields(given));
     FlowState state{Array<Vertex, Vec3>(flow[0].values.size()), flow[3].values};
-    if (expands(it)) state.density = flow[4].values;
-    const std::vector<Region> liquids = liquids_of(it);
-    if (!liquids.empty()) state.within.assign(it.domain.bodies.size(), state.pressure);
+    if (expands(given)) state.density = flow[4].values;
+    const std::vector<Region> liquids = liquids_of(given);
+    if (!liquids.empty()) state.within.assign(given.domain.bodies.size(), state.pressure);
     for (std::size_t k = 0; k < liquids.size(); ++k)
         state.within[as_size(liquids[k].value - 1)] = flow[flow.size() - 3 - liquids.size() + k].values;
     for (Vertex v : state.velocity.indices()) state.velocity[v] = {flow[0].values[v], flow[1].values[v], flow[2].values[v]};
     return state;
 }
 
-void keep_flow(const Case& it, const FlowState& flow, std::span<NodalField> fields) {
-    const auto kept = fields.subspan(place_of_flow(it), count_flow_fields(it));
+void keep_flow(const Case& given, const FlowState& flow, std::span<NodalField> fields) {
+    const auto kept = fields.subspan(place_of_flow(given), count_flow_fields(given));
     for (Vertex v : flow.velocity.indices())
         for (int axis = 0; axis < 3; ++axis) kept[as_size(axis)].values[v] = flow.velocity[v][axis];
     kept[3].values = flow.pressure;
-    if (expands(it)) kept[4].values = flow.density;
-    const std::vector<Region> liquids = liquids_of(it);
+    if (expands(given)) kept[4].values = flow.density;
+    const std::vector<Region> liquids = liquids_of(given);
     for (std::size_t k = 0; k < liquids.size(); ++k)
         kept[kept.size() - 3 - liquids.size() + k].values = flow.within[as_size(liquids[k].value - 1)];
-}
-
-// The derivative of the motion by differences over a small part of the step; of the rotation, R' R^T is the spin's cross.
-RigidVelocity velocity_of(const Body& body, double t, double dt) {
-    constexpr double part = 1e-3;  // [-] of the step: the cube of it is lost, as is rounding over it
-    const double h = part * dt;
-    const Pose before = body.motion(t - h), after = body.motion(t + h), now = body.motion(t);
-    RigidVelocity velocity{body.shape.centre + now.displacement, (after.displacement - before.displacement) / (2 * h), {}};
-    for (int axis = 0; axis < 3; ++axis) {
-        Vec3 unit;
-        unit[axis] = 1;
-        const Vec3 e = rotated(now.rotation, unit);
-        const Vec3 rate = (rotated(after.rotation, unit) - rotated(before.rotation, unit)) / (2 * h);
-        velocity.spin += 0.5 * cross(e, rate);
-    }
-    return velocity;
 }
 
 }  // namespace kropla

@@ -28,15 +28,15 @@ std::map<Triangle, int> patches_of(const FileCells& cells) {
 std::vector<LooseInterface> loose_interfaces(const FixedMesh& fixed, const FileCells& cells) {
     const std::map<Triangle, int> patches = patches_of(cells);
     std::vector<LooseInterface> loose;
-    for (Interface& it : interfaces(fixed.mesh)) {
-        if (!it.is_apart) continue;
+    for (Interface& surface : interfaces(fixed.mesh)) {
+        if (!surface.is_apart) continue;
         std::map<int, std::size_t> found;
-        for (const Triangle& triangle : it.triangles)
+        for (const Triangle& triangle : surface.triangles)
             if (const auto at = patches.find(in_file(fixed, triangle)); at != patches.end()) ++found[at->second];
-        const bool whole = found.size() == 1 && found.begin()->second == it.triangles.size();
+        const bool whole = found.size() == 1 && found.begin()->second == surface.triangles.size();
         if (!found.empty() && !whole) continue;
         const auto patch = whole ? std::optional(found.begin()->first) : std::nullopt;
-        loose.push_back({std::move(it), patch});
+        loose.push_back({std::move(surface), patch});
     }
     return loose;
 }
@@ -55,10 +55,10 @@ void take_facets(const FixedMesh& fixed, std::span<const LooseInterface> loose, 
 
 void give_facets(std::span<const LooseInterface> loose, FileCells& cells) {
     const FixedMesh now = fixed_mesh(cells);
-    for (const Interface& it : interfaces(now.mesh))
+    for (const Interface& surface : interfaces(now.mesh))
         for (const auto& [interface, patch] : loose) {
-            if (!patch || interface.inner != it.inner || interface.outer != it.outer) continue;
-            for (const auto& [a, b, c] : it.triangles)
+            if (!patch || interface.inner != surface.inner || interface.outer != surface.outer) continue;
+            for (const auto& [a, b, c] : surface.triangles)
                 cells.facets.push_back({{now.in_file[a], now.in_file[b], now.in_file[c], Vertex{}}, *patch});
         }
 }

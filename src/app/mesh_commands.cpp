@@ -118,13 +118,13 @@ void print_table(const Quality& before, const Quality& after, double seconds) {
 /// Says which interfaces stay as they are.
 std::vector<LooseInterface> loose_interfaces_told(const FixedMesh& fixed, const FileCells& cells) {
     auto loose = loose_interfaces(fixed, cells);
-    for (const Interface& it : interfaces(fixed.mesh)) {
+    for (const Interface& surface : interfaces(fixed.mesh)) {
         const auto is_it = [&](const LooseInterface& other) {
-            return other.interface.inner == it.inner && other.interface.outer == it.outer;
+            return other.interface.inner == surface.inner && other.interface.outer == surface.outer;
         };
         if (std::ranges::none_of(loose, is_it))
-            fmt::print("the interface of regions {} and {} stays as it is: {}\n", it.outer.value, it.inner.value,
-                       it.is_apart ? "it has several patches, or one on a part of it"
+            fmt::print("the interface of regions {} and {} stays as it is: {}\n", surface.outer.value, surface.inner.value,
+                       surface.is_apart ? "it has several patches, or one on a part of it"
                                    : "it is at the boundary, at a third region, or touches itself");
     }
     return loose;
@@ -167,7 +167,7 @@ int improve_mesh_file(const MeshFiles& files) {
     const Quality before = quality_of(fixed.mesh);
     const auto start = std::chrono::steady_clock::now();
     std::vector<Interface> free;
-    for (const LooseInterface& it : loose) free.push_back(it.interface);
+    for (const LooseInterface& surface : loose) free.push_back(surface.interface);
     (void)remesh_interfaces(fixed.mesh, free, {.watch = &watch});
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const Quality after = quality_of(fixed.mesh);

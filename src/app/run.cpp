@@ -2,18 +2,18 @@
 
 #include "app/run.h"
 
-#include "app/case.h"
+#include "case/case.h"
 #include "app/commands.h"
 #include "app/ending.h"
 #include "app/flow_fields.h"
 #include "app/first_mesh.h"
-#include "app/foresight.h"
+#include "case/foresight.h"
 #include "app/interrupt.h"
 #include "app/run_folder.h"
 #include "app/run_lines.h"
 #include "app/run_lock.h"
 #include "app/run_output.h"
-#include "app/same_case.h"
+#include "case/same_case.h"
 #include "app/solver_options.h"
 #include "app/species_fields.h"
 #include "app/step.h"
@@ -42,21 +42,21 @@ namespace {
 constexpr double least_dt_share = 1e-3;    // of the wanted dt: below, the floors count as unreachable
 constexpr double same_time = 1e-9;         // of the wanted dt: what is left of a step is rounding
 
-State start(const Case& it, const Ranks& ranks) {
+State start(const Case& given, const Ranks& ranks) {
     const Watch* watch = ranks.watch;
-    Mesh mesh = first_mesh(it, watch);
+    Mesh mesh = first_mesh(given, watch);
     std::vector<NodalField> fields;
-    if (it.heat) {
-        check_heat(*it.heat, mesh);
-        fields.push_back(initial_temperature(ranks, mesh, *it.heat));
+    if (given.heat) {
+        check_heat(*given.heat, mesh);
+        fields.push_back(initial_temperature(ranks, mesh, *given.heat));
     }
-    std::ranges::move(initial_species(mesh, it), std::back_inserter(fields));
-    if (it.flow) {
-        check_flow(it.flow->options, mesh);
-        std::ranges::move(initial_flow(mesh, it, it.heat ? fields.front().values : Array<Vertex, double>{}), std::back_inserter(fields));
+    std::ranges::move(initial_species(mesh, given), std::back_inserter(fields));
+    if (given.flow) {
+        check_flow(given.flow->options, mesh);
+        std::ranges::move(initial_flow(mesh, given, given.heat ? fields.front().values : Array<Vertex, double>{}), std::back_inserter(fields));
     }
-    State state{MovingMesh(it.domain, std::move(mesh), 0, adapt_options(it, watch)), std::move(fields), {}};
-    for (const auto& motion : it.free) {
+    State state{MovingMesh(given.domain, std::move(mesh), 0, adapt_options(given, watch)), std::move(fields), {}};
+    for (const auto& motion : given.free) {
         state.free.emplace_back();
         if (motion) state.free.back() = {.pose = {}, .velocity = motion->velocity, .spin = motion->spin};
     }
@@ -77,8 +77,8 @@ bool at_end(const Place& place, const TimePlan& plan) {
 }
 
 /// Is there to be a frame of this step?
-bool is_framed(const Place& place, const Case& it) {
-    return place.step % it.output.every == 0 || at_end(place, it.time);
+bool is_framed(const Place& place, const Case& given) {
+    return place.step % given.output.every == 0 || at_end(place, given.time);
 }
 
 constexpr const char* steps_given_name = "steps_given";
@@ -108,12 +108,12 @@ std::map<std::string, double> values_of(const std::vector<FreeState>& free) {
     return values;
 }
 
-std::vector<FreeState> free_states(const Case& it, const std::map<std::string, double>& values) {
-    std::vector<FreeState> free(it.free.size());
+std::vector<FreeState> free_states(const Case& given, const std::map<std::string, double>& values) {
+    std::vector<FreeState> free(given.free.size());
     for (std::size_t body = 0; body < free.size(); ++body) {
-        if (!it.free[body]) continue;
-        free[body].velocity = it.free[body]->velocity;
-        free[body].spin = it.free[body]->spin;
+        if (!given.free[body]) continue;
+        free[body].velocity = given.free[body]->velocity;
+        free[body].spin = given.free[body]->spin;
         for_each_number(free[body], body, [&](const std::string& name, double& value) {
             const auto known = values.find(name);
             if (known == values.end()) return;
@@ -125,27 +125,27 @@ std::vector<FreeState> free_states(const Case& it, const std::map<std::string, d
 }
 
 /// Makes the case one with which the run goes on.
-Place resume(Case& it, const RunOptions& options, const Watch* watch) {
+Place resume(Case& given, const RunOptions& options, const Watch* watch) {
     Checkpoint saved = read_checkpoint(options.out / checkpoint_name);
-    const int given = it.time.steps;
+    const int steps_asked = given.time.steps;
     const auto known = saved.values.find(steps_given_name);
     const double had = known != saved.values.end() ? known->second : 0;
-    go_on_with(it, {saved.case_text, static_cast<int>(had), saved.time}, options.case_file.string(),
+    go_on_with(given, {saved.case_text, static_cast<int>(had), saved.time}, options.case_file.string(),
                options.out.string());
-    std::vector<FreeState> free = free_states(it, saved.values);
+    std::vector<FreeState> free = free_states(given, saved.values);
     std::vector<BodyPlace> places;
     for (std::size_t body = 0; body < free.size(); ++body)
-        if (it.free[body]) places.push_back({body, free[body].pose});
-    Place place{{MovingMesh(it.domain, std::move(saved.mesh), saved.time, adapt_options(it, watch), places),
+        if (given.free[body]) places.push_back({body, free[body].pose});
+    Place place{{MovingMesh(given.domain, std::move(saved.mesh), saved.time, adapt_options(given, watch), places),
                  std::move(saved.fields), std::move(free)},
                 saved.step,
                 saved.next_dt,
-                given};
-    place.owes_frame = is_framed(place, it) && !has_frame(options.out, place.step);
+                steps_asked};
+    place.owes_frame = is_framed(place, given) && !has_frame(options.out, place.step);
     return place;
 }
 
-Checkpoint checkpoint_of(const Place& place, const Case& it) {
+Checkpoint checkpoint_of(const Place& place, const Case& given) {
     std::map<std::string, double> values = values_of(place.state.free);
     values.emplace(steps_given_name, place.steps_given);
     return {.mesh = place.state.moving.reference(),
@@ -153,7 +153,7 @@ Checkpoint checkpoint_of(const Place& place, const Case& it) {
             .time = place.state.moving.time(),
             .next_dt = place.next_dt,
             .step = place.step,
-            .case_text = to_toml(it),
+            .case_text = to_toml(given),
             .values = std::move(values)};
 }
 
@@ -167,30 +167,30 @@ double step_length(const Place& place, const TimePlan& plan) {
 
 class TimeLoop {
 public:
-    TimeLoop(const Case& it, const Ranks& ranks, Place place, RunOutput& output, bool test_rollback)
-        : it_(it), ranks_(ranks), place_(std::move(place)), output_(output), test_rollback_(test_rollback) {}
+    TimeLoop(const Case& given, const Ranks& ranks, Place place, RunOutput& output, bool test_rollback)
+        : given_(given), ranks_(ranks), place_(std::move(place)), output_(output), test_rollback_(test_rollback) {}
 
     /// Goes on to the end of the case. Throws Interrupted if a watch says so: then the step is dropped.
     void run() {
-        const double wanted = it_.time.end / it_.time.steps;
+        const double wanted = given_.time.end / given_.time.steps;
         if (place_.owes_frame) write_frame();
-        for (heed(ranks_); !at_end(place_, it_.time); heed(ranks_)) {
+        for (heed(ranks_); !at_end(place_, given_.time); heed(ranks_)) {
             const auto begin = std::chrono::steady_clock::now();
-            const StepOptions options{step_length(place_, it_.time), least_dt_share * wanted};
-            if (test_rollback_) take_step_back(place_.state, it_, ranks_, options);
-            const StepReport report = time_step(place_.state, it_, ranks_, options);
+            const StepOptions options{step_length(place_, given_.time), least_dt_share * wanted};
+            if (test_rollback_) take_step_back(place_.state, given_, ranks_, options);
+            const StepReport report = time_step(place_.state, given_, ranks_, options);
             ++place_.step;
             is_saved_ = false;
             place_.next_dt = std::min(wanted, next_dt(report.mesh, place_.next_dt));
-            if (const double c = report.flow.largest_courant; it_.time.courant && c > 0)
-                place_.next_dt = std::min(place_.next_dt, *it_.time.courant / c * report.mesh.dt);
+            if (const double c = report.flow.largest_courant; given_.time.courant && c > 0)
+                place_.next_dt = std::min(place_.next_dt, *given_.time.courant / c * report.mesh.dt);
             write(report, begin);
         }
     }
 
     /// Writes the checkpoint, if there is none of this step yet.
     void save() {
-        if (!is_saved_) output_.write_checkpoint(checkpoint_of(place_, it_));
+        if (!is_saved_) output_.write_checkpoint(checkpoint_of(place_, given_));
         is_saved_ = true;
     }
     [[nodiscard]] const Mesh& mesh() const { return place_.state.moving.reference(); }
@@ -201,12 +201,12 @@ private:
         output_.write_step(place_.step, report, state);
         for (const StepWarning& warning : report.warnings)
             if (said_.insert(warning.about).second) output_.say("warning: " + warning.text);
-        if (is_framed(place_, it_)) {
+        if (is_framed(place_, given_)) {
             write_frame();
             save();
         }
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-        output_.show_progress(place_.step, report, taken.count() * (it_.time.end - report.mesh.time) / report.mesh.dt);
+        output_.show_progress(place_.step, report, taken.count() * (given_.time.end - report.mesh.time) / report.mesh.dt);
     }
 
     /// If this is interrupted, a run that is resumed makes up for it.
@@ -215,7 +215,7 @@ private:
         place_.owes_frame = false;
     }
 
-    const Case& it_;
+    const Case& given_;
     const Ranks& ranks_;
     Place place_;
     RunOutput& output_;
@@ -268,10 +268,10 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& 
 }
 
 /// The run's first mesh, told on the way.
-Place begin(const Case& it, const Ranks& ranks, Progress& progress) {
+Place begin(const Case& given, const Ranks& ranks, Progress& progress) {
     const auto start_time = std::chrono::steady_clock::now();
     ranks.watch->progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
-    Place place{start(it, ranks), 0, it.time.end / it.time.steps, it.time.steps, true};
+    Place place{start(given, ranks), 0, given.time.end / given.time.steps, given.time.steps, true};
     ranks.watch->progress = {};
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
     progress.say(mesh_line(place.state.moving.reference(), taken.count()));
@@ -279,11 +279,11 @@ Place begin(const Case& it, const Ranks& ranks, Progress& progress) {
 }
 
 /// Where a run begins. Nothing is written yet; but if the mesh cannot be made, a page that says why.
-Place first_place(const RunOptions& options, Case& it, const Ranks& ranks, Progress& progress) {
+Place first_place(const RunOptions& options, Case& given, const Ranks& ranks, Progress& progress) {
     try {
         return together(ranks, [&] {
-            warn(foresee(it, ranks.watch));
-            Place place = options.resume ? resume(it, options, ranks.watch) : begin(it, ranks, progress);
+            warn(foresee(given, ranks.watch));
+            Place place = options.resume ? resume(given, options, ranks.watch) : begin(given, ranks, progress);
             heed(ranks);  // all have looked at the folder before one writes
             return place;
         });
@@ -346,22 +346,22 @@ Case read_or_show(const RunOptions& options, bool writes) {
 
 int run_with(const RunOptions& options, const Ranks& ranks) {
     const auto start_time = std::chrono::steady_clock::now();
-    Case it = read_or_show(options, ranks.rank == 0);
+    Case given = read_or_show(options, ranks.rank == 0);
     const auto lock = hold_folder(options, ranks);
     Progress progress;
-    if (!options.resume) progress.say(opening_line(options, it));
-    Place place = first_place(options, it, ranks, progress);
+    if (!options.resume) progress.say(opening_line(options, given));
+    Place place = first_place(options, given, ranks, progress);
     const std::string reached = spoken_time(place.state.moving.time());
-    if (options.resume && at_end(place, it.time) && !place.owes_frame) {
+    if (options.resume && at_end(place, given.time) && !place.owes_frame) {
         progress.say(fmt::format("{}: the run is finished: step {} at {}; nothing was done. With a later time.end it "
                                  "goes on", options.out.string(), place.step, reached));
         return 0;
     }
     if (options.resume)
         progress.say(fmt::format("{}: goes on after step {} at {}, until {}", options.out.string(), place.step, reached,
-                                 spoken_time(it.time.end)));
-    RunOutput output(options, it, ranks.rank == 0, place.step, place.state, progress);
-    TimeLoop loop(it, ranks, std::move(place), output, options.test_rollback);
+                                 spoken_time(given.time.end)));
+    RunOutput output(options, given, ranks.rank == 0, place.step, place.state, progress);
+    TimeLoop loop(given, ranks, std::move(place), output, options.test_rollback);
     if (!options.resume) loop.save();
     const int code = run_to_end(loop, output, ranks, progress, options.case_file);
     for (const std::string& option : unused_solver_options(options.solver_options))

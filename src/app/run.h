@@ -8,7 +8,7 @@ namespace kropla {
 
 struct RunOptions {
     std::filesystem::path case_file;
-    std::vector<std::string> settings;        // "key=value", put into the case (case_setting.h)
+    std::vector<std::string> settings;        // "key=value", put into the case (case/setting.h)
     std::filesystem::path out;                // the folder that the run fills
     bool resume = false;                      // go on from the folder's checkpoint
     bool force = false;                       // overwrite the run that the folder holds

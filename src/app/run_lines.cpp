@@ -82,10 +82,10 @@ std::string spoken_estimate(double count) { return spoken_count(std::stod(fmt::f
 
 }  // namespace
 
-std::string opening_line(const RunOptions& options, const Case& it) {
+std::string opening_line(const RunOptions& options, const Case& given) {
     return fmt::format("{}: about {} tets, {} to {}, {}", options.case_file.string(),
-                       spoken_estimate(it.mesh ? count_tets(*it.mesh->mesh) : estimate_tets(it.domain)), counted(it.time.steps, "step"),
-                       spoken_time(it.time.end), counted(threads(), "thread"));
+                       spoken_estimate(given.mesh ? count_tets(*given.mesh->mesh) : estimate_tets(given.domain)), counted(given.time.steps, "step"),
+                       spoken_time(given.time.end), counted(threads(), "thread"));
 }
 
 std::string mesh_line(const Mesh& mesh, double seconds) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/case.h"
+#include "case/case.h"
 #include "app/run.h"
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace kropla {
 // What a run says of itself at its beginning and at its end, in lines without their ends.
 
 /// `droplet.toml: about 75,000 tets, 50 steps to 10.0 ms, 2 threads`.
-[[nodiscard]] std::string opening_line(const RunOptions& options, const Case& it);
+[[nodiscard]] std::string opening_line(const RunOptions& options, const Case& given);
 /// `initial mesh: 74,364 tets, 13,240 vertices, worst R/r 4.98, in 2.31 s`.
 [[nodiscard]] std::string mesh_line(const Mesh& mesh, double seconds);
 /// What came out, by the files in its folder, and what to open:

@@ -23,21 +23,21 @@ namespace {
 constexpr std::size_t most_bodies = 2;  // of which the progress line speaks: the first
 
 /// The mean temperature of each body.
-std::string temperatures(const StepReport& report, const Case& it) {
+std::string temperatures(const StepReport& report, const Case& given) {
     std::string text;
     for (std::size_t body = 0; body < std::min(most_bodies, report.bodies.size()); ++body)
-        text += fmt::format("{}{} {} K", body == 0 ? "" : ", ", it.domain.bodies[body].name,
+        text += fmt::format("{}{} {} K", body == 0 ? "" : ", ", given.domain.bodies[body].name,
                             spoken_count(std::round(report.bodies[body].mean)));
     return text;
 }
 
 /// The speed of each body that moves, as a mean over the step.
-std::string speeds(const StepReport& report, const Case& it) {
+std::string speeds(const StepReport& report, const Case& given) {
     std::string text;
     for (std::size_t body = 0; body < std::min(most_bodies, report.velocities.size()); ++body) {
         const double speed = norm(report.velocities[body]);
-        if (is_rounding(speed * report.mesh.dt, norm(it.domain.box.max - it.domain.box.min))) continue;
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", it.domain.bodies[body].name,
+        if (is_rounding(speed * report.mesh.dt, norm(given.domain.box.max - given.domain.box.min))) continue;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", given.domain.bodies[body].name,
                             spoken_quantity(speed, "m/s"));
     }
     return text;
@@ -46,7 +46,7 @@ std::string speeds(const StepReport& report, const Case& it) {
 std::string frame_name(std::int64_t step) { return fmt::format("frames/{:05}.vtu", step); }
 
 /// The columns of a run's table.
-StepRow columns(const Case& it, const Mesh& mesh) { return step_row(0, {}, mesh, {}, it); }
+StepRow columns(const Case& given, const Mesh& mesh) { return step_row(0, {}, mesh, {}, given); }
 
 /// The highest rung of the repair ladder that was climbed.
 const char* rung(const Changes& c) {
@@ -65,9 +65,9 @@ bool has_frame(const std::filesystem::path& folder, std::int64_t step) {
     return std::ranges::any_of(series, [&](const SeriesEntry& frame) { return frame.file == frame_name(step); });
 }
 
-RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step,
+RunOutput::RunOutput(const RunOptions& options, const Case& given, bool speak, std::int64_t step,
                      const State& state, Progress& progress)
-    : overwrite_(options.force), folder_(options.out), it_(it), speak_(speak), progress_(progress) {
+    : overwrite_(options.force), folder_(options.out), given_(given), speak_(speak), progress_(progress) {
     if (!speak_) return;
     forget_end(folder_);
     if (options.resume) go_on(step, state);
@@ -76,44 +76,44 @@ RunOutput::RunOutput(const RunOptions& options, const Case& it, bool speak, std:
 
 void RunOutput::start(const State& state) {
     const Mesh& mesh = state.moving.reference();
-    const auto* temperature = it_.heat ? &state.fields.front().values : nullptr;
+    const auto* temperature = given_.heat ? &state.fields.front().values : nullptr;
     if (overwrite_) clear_run_folder(folder_);
     std::error_code trouble;
     std::filesystem::create_directories(folder_ / "frames", trouble);
     if (trouble) throw FileError(fmt::format("{}: cannot be made: {}", folder_.string(), trouble.message()));
-    write_file(folder_ / "case.toml", to_toml(it_));
-    write_bodies(folder_ / "bodies.csv", body_sizes(it_.domain, mesh), body_states(it_.domain, mesh, temperature),
-                 it_.heat.has_value());
-    table_.emplace(folder_ / "steps.csv", columns(it_, mesh));
+    write_file(folder_ / "case.toml", to_toml(given_));
+    write_bodies(folder_ / "bodies.csv", body_sizes(given_.domain, mesh), body_states(given_.domain, mesh, temperature),
+                 given_.heat.has_value());
+    table_.emplace(folder_ / "steps.csv", columns(given_, mesh));
     write_pvd(folder_ / "frames.pvd", series_);
 }
 
 void RunOutput::go_on(std::int64_t step, const State& state) {
-    table_.emplace(folder_ / "steps.csv", columns(it_, state.moving.reference()), static_cast<int>(step));
+    table_.emplace(folder_ / "steps.csv", columns(given_, state.moving.reference()), static_cast<int>(step));
     series_ = read_pvd(folder_ / "frames.pvd");
     std::erase_if(series_, [&](const SeriesEntry& frame) { return frame.time > state.moving.time(); });
     write_pvd(folder_ / "frames.pvd", series_);
-    write_file(folder_ / "case.toml", to_toml(it_));  // its end, or how often frames are written, may be another
+    write_file(folder_ / "case.toml", to_toml(given_));  // its end, or how often frames are written, may be another
 }
 
 void RunOutput::write_step(std::int64_t step, const StepReport& report, const State& state) {
     if (!speak_) return;
     const Mesh& mesh = state.moving.reference();
     quality_ = summarise_quality(mesh);
-    table_->append(step_row(step, report, mesh, *quality_, it_));
+    table_->append(step_row(step, report, mesh, *quality_, given_));
 }
 
 void RunOutput::write_frame(std::int64_t step, const State& state, const Watch* watch) {
     if (!speak_) return;
     const Mesh& mesh = state.moving.reference();
-    std::vector<NodalField> fields = shown_fields(mesh, it_, state.fields);
+    std::vector<NodalField> fields = shown_fields(mesh, given_, state.fields);
     std::vector<NodalVectorField> vectors;
     std::vector<CellField> of_cells;
-    if (it_.flow) {
-        if (!liquids_of(it_).empty()) of_cells.push_back(mean_pressure(mesh, it_, state.fields));
-        FlowState flow = flow_state(it_, state.fields);
-        std::ranges::move(shown_pressures(mesh, it_, state.fields), std::back_inserter(fields));
-        if (expands(it_)) fields.push_back({"density", "kg/m^3", std::move(flow.density)});
+    if (given_.flow) {
+        if (!liquids_of(given_).empty()) of_cells.push_back(mean_pressure(mesh, given_, state.fields));
+        FlowState flow = flow_state(given_, state.fields);
+        std::ranges::move(shown_pressures(mesh, given_, state.fields), std::back_inserter(fields));
+        if (expands(given_)) fields.push_back({"density", "kg/m^3", std::move(flow.density)});
         vectors.push_back({"velocity", "m/s", std::move(flow.velocity)});
     }
     write_vtu(folder_ / frame_name(step), mesh, fields, watch, vectors, of_cells);
@@ -131,8 +131,8 @@ void RunOutput::write_end(const std::exception& why, const Mesh& mesh) {
 
 void RunOutput::show_progress(std::int64_t step, const StepReport& report, double seconds_left) {
     if (!speak_) return;
-    const double wanted = it_.time.end / it_.time.steps;
-    const double left = it_.time.end - report.mesh.time;
+    const double wanted = given_.time.end / given_.time.steps;
+    const double left = given_.time.end - report.mesh.time;
     const auto steps_left = static_cast<std::int64_t>(std::ceil(left / wanted - 1e-6));
     ProgressRow row;
     row.step = static_cast<int>(step);
@@ -142,9 +142,9 @@ void RunOutput::show_progress(std::int64_t step, const StepReport& report, doubl
     row.rung = rung(report.mesh.changes);
     row.touched_fraction = report.mesh.touched_fraction;
     row.mesh_seconds = report.mesh.mesh_seconds;
-    if (it_.heat) row.heat_seconds = report.mesh.solve_seconds;
-    if (it_.flow && !it_.heat) row.flow_seconds = report.mesh.solve_seconds;
-    row.bodies = it_.heat ? temperatures(report, it_) : it_.flow ? speeds(report, it_) : "";
+    if (given_.heat) row.heat_seconds = report.mesh.solve_seconds;
+    if (given_.flow && !given_.heat) row.flow_seconds = report.mesh.solve_seconds;
+    row.bodies = given_.heat ? temperatures(report, given_) : given_.flow ? speeds(report, given_) : "";
     row.seconds_left = seconds_left;
     progress_.show(row);
 }

@@ -21,7 +21,7 @@ class RunOutput {
 public:
     /// Starts the folder with the case, or continues it after `step`; later frames and rows, which a run that was
     /// ended left behind its checkpoint, are dropped. Throws FileError.
-    RunOutput(const RunOptions& options, const Case& it, bool speak, std::int64_t step, const State& state,
+    RunOutput(const RunOptions& options, const Case& given, bool speak, std::int64_t step, const State& state,
               Progress& progress);
 
     void write_step(std::int64_t step, const StepReport& report, const State& state);
@@ -39,7 +39,7 @@ private:
 
     bool overwrite_;
     std::filesystem::path folder_;
-    const Case& it_;
+    const Case& given_;
     bool speak_;
     std::vector<SeriesEntry> series_;
     std::optional<StepsTable> table_;

@@ -1,6 +1,6 @@
 #include "app/solver_options.h"
 
-#include "app/case_table.h"
+#include "case/table.h"
 #include <kropla/base/error.h>
 #include "simulate/flow_solver.h"
 #include "simulate/solver.h"

@@ -1,6 +1,6 @@
 #include "app/step.h"
 
-#include "app/case_heat.h"
+#include "case/heat.h"
 #include "app/flow_fields.h"
 #include "app/liquid_bodies.h"
 #include "app/species_fields.h"
@@ -86,20 +86,20 @@ std::vector<StepWarning> touch_warnings(const Domain& domain, const ContactRepor
 /// What is carried, solved for and looked at in a step of the case.
 class Simulation {
 public:
-    Simulation(State& state, const Case& it, const Ranks& ranks) : state_(state), it_(it), ranks_(ranks) {
-        if (it.heat) carry_heat();
-        for (const SpeciesField& field : species_fields(it))
+    Simulation(State& state, const Case& given, const Ranks& ranks) : state_(state), given_(given), ranks_(ranks) {
+        if (given.heat) carry_heat();
+        for (const SpeciesField& field : species_fields(given))
             fields_.per_vertex(state.fields[field.place].values, {.only = Region(field.region)});
-        if (!it.flow) return;
-        const std::vector<Carrying> how = carrying_of_flow(it);
-        for (std::size_t k = 0; k < how.size(); ++k) fields_.per_vertex(state.fields[place_of_flow(it) + k].values, how[k]);
+        if (!given.flow) return;
+        const std::vector<Carrying> how = carrying_of_flow(given);
+        for (std::size_t k = 0; k < how.size(); ++k) fields_.per_vertex(state.fields[place_of_flow(given) + k].values, how[k]);
     }
 
     Advanced advance(const StepOptions& options, std::function<void(const Mesh&)> last_look = {}) {
         AdvanceOptions how{.least_dt = options.least_dt, .last_look = std::move(last_look), .watch = ranks_.watch};
-        if (it_.heat) how.contents = {[&](const Mesh& mesh) { return energy_on(mesh); }};
-        for (std::size_t s = 0; s < it_.species.size(); ++s)
-            how.contents.push_back([&, s](const Mesh& mesh) { return energy_of(mesh, concentrations(it_, s, state_.fields)); });
+        if (given_.heat) how.contents = {[&](const Mesh& mesh) { return energy_on(mesh); }};
+        for (std::size_t s = 0; s < given_.species.size(); ++s)
+            how.contents.push_back([&, s](const Mesh& mesh) { return energy_of(mesh, concentrations(given_, s, state_.fields)); });
         how.expected = [&](const Mesh& before, double end) {
             expect_liquids(before, end);
             return BodiesMoved{free_places(end), courses()};
@@ -113,7 +113,7 @@ public:
                 throw SolverError(unsolved_);
             }
         }();
-        if (it_.heat) finish_heat(done);
+        if (given_.heat) finish_heat(done);
         for (const auto& [body, step] : free_) state_.free[body] = step.end();
         if (contacts_) report.contact = contacts_->report();
         return done;
@@ -127,64 +127,64 @@ private:
     void finish_heat(const Advanced& done) {
         const Mesh& mesh = state_.moving.reference();
         const HeatExtremes& solved = report.heat.extremes;
-        if (!enthalpy_.empty()) temperature_of(mesh, *it_.heat, enthalpy_, temperature(), known_density());
+        if (!enthalpy_.empty()) temperature_of(mesh, *given_.heat, enthalpy_, temperature(), known_density());
         else if (!done.transfer.empty() && done.transfer.front().beyond > rounding * std::abs(solved.most.value))
-            keep_within(ranks_, mesh, *it_.heat, solved.least.value, solved.most.value, temperature());
+            keep_within(ranks_, mesh, *given_.heat, solved.least.value, solved.most.value, temperature());
     }
 
     /// Into the arrays that `fields_` knows.
     void take_enthalpies(const Mesh& mesh) {
-        std::ranges::move(enthalpies(mesh, *it_.heat, temperature(), known_density()), enthalpy_.begin());
+        std::ranges::move(enthalpies(mesh, *given_.heat, temperature(), known_density()), enthalpy_.begin());
     }
     [[nodiscard]] KnownDensity known_density() const {
-        if (!expands(it_)) return {};
-        return {Region(0), flow_state(it_, state_.fields).density};
+        if (!expands(given_)) return {};
+        return {Region(0), flow_state(given_, state_.fields).density};
     }
     [[nodiscard]] double energy_on(const Mesh& mesh) {
-        return enthalpy_.empty() ? energy(mesh, *it_.heat, temperature()) : energy_of(mesh, enthalpy_);
+        return enthalpy_.empty() ? energy(mesh, *given_.heat, temperature()) : energy_of(mesh, enthalpy_);
     }
 
     /// What is carried of the heat: the temperature, or where it does not tell the energy by a factor, enthalpies.
     void carry_heat() {
-        if (proportional(*it_.heat)) {
-            fields_.per_vertex(temperature(), {.weight = capacities(*it_.heat)});
+        if (proportional(*given_.heat)) {
+            fields_.per_vertex(temperature(), {.weight = capacities(*given_.heat)});
             return;
         }
-        enthalpy_ = enthalpies(state_.moving.reference(), *it_.heat, temperature(), known_density());
+        enthalpy_ = enthalpies(state_.moving.reference(), *given_.heat, temperature(), known_density());
         for (std::size_t r = 0; r < enthalpy_.size(); ++r) fields_.per_vertex(enthalpy_[r], {.only = Region(r)});
         fields_.per_vertex(temperature());
     }
 
     Answer solve(const StepToSolve& step) {
         unsolved_.clear();
-        if (!enthalpy_.empty()) temperature_of(step.before, *it_.heat, enthalpy_, temperature(), known_density());
-        const Array<Vertex, double> begin = it_.heat ? temperature() : Array<Vertex, double>{};
+        if (!enthalpy_.empty()) temperature_of(step.before, *given_.heat, enthalpy_, temperature(), known_density());
+        const Array<Vertex, double> begin = given_.heat ? temperature() : Array<Vertex, double>{};
         FlowState flow;
         expect(step, begin);
-        const bool in_turns = expands(it_) && step.round == 1;  // first what the gas does, then where bodies go in it
+        const bool in_turns = expands(given_) && step.round == 1;  // first what the gas does, then where bodies go in it
         for (int round = 1;; ++round) {
             SolvedFlow solved;
-            if (it_.flow) {
+            if (given_.flow) {
                 if (const Answer answer = solve_flow(step, flow, solved); !std::holds_alternative<Solved>(answer)) return answer;
                 if (!in_turns) {
                     const bool rigid = bodies_agree();
                     if (!liquids_agree(step, flow, rigid) || !rigid) return BodiesMoved{places(), courses()};
                 }
             }
-            if (!it_.heat && it_.species.empty()) break;
+            if (!given_.heat && given_.species.empty()) break;
             flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt,
                                   solved);
-            if (!it_.heat) break;
+            if (!given_.heat) break;
             temperature() = begin;
             solve_heat(step);
             if (!in_turns || density_agrees(step, solved.density, round == most_rounds) || round == most_rounds) break;
             expected_ = temperature();
         }
         if (in_turns && !bodies_agree()) return BodiesMoved{places()};
-        if (liquids_) keep_flow_rate(it_, rate_over(step, flow), state_.fields);
-        if (it_.flow) keep_flow(it_, flow, state_.fields);
+        if (liquids_) keep_flow_rate(given_, rate_over(step, flow), state_.fields);
+        if (given_.flow) keep_flow(given_, flow, state_.fields);
         if (!enthalpy_.empty()) take_enthalpies(step.current);
-        for (std::size_t s = 0; s < it_.species.size(); ++s) solve_species(step, s);
+        for (std::size_t s = 0; s < given_.species.size(); ++s) solve_species(step, s);
         return Solved{};
     }
 
@@ -193,14 +193,14 @@ private:
     void expect(const StepToSolve& step, const Array<Vertex, double>& begin) {
         const Array<Vertex, double> last = std::exchange(expected_, begin);
         const Array<Vertex, Vec3> place = std::exchange(expected_at_, step.before.position);
-        if (step.round == 1 || !expands(it_)) return;
+        if (step.round == 1 || !expands(given_)) return;
         for (Vertex v : begin.indices())
             if (as_size(v.value) < last.size() && place[v] == expected_at_[v]) expected_[v] = last[v];
     }
 
     /// Is a density that of the temperature, in the mean over the gas? If not, the last time it is said.
     bool density_agrees(const StepToSolve& step, const Array<Vertex, double>& density, bool last) {
-        const Property& wanted = it_.flow->options.regions[0]->density;
+        const Property& wanted = given_.flow->options.regions[0]->density;
         Vertex behind;
         double most = 0, sum = 0, volume = 0;
         for_each_share(step.current, living_cells(step.current, Region(0)), [&](const auto&, Vertex v, double share) {
@@ -225,18 +225,18 @@ private:
         free_.clear();
         const MovingMesh& moving = state_.moving;
         const double dt = end - moving.time();
-        for (std::size_t body = 0; body < it_.free.size(); ++body) {
-            if (!it_.free[body]) continue;
-            const FreeMotion& motion = *it_.free[body];
-            const FlowRegion& around = *it_.flow->options.regions[0];
+        for (std::size_t body = 0; body < given_.free.size(); ++body) {
+            if (!given_.free[body]) continue;
+            const FreeMotion& motion = *given_.free[body];
+            const FlowRegion& around = *given_.flow->options.regions[0];
             RigidStep& step = free_.emplace_back(body, RigidStep(motion, state_.free[body],
                                                                  weighed(moving.reference(), region_of_body(body), motion.density),
-                                                                 it_.domain.bodies[body].shape.centre + state_.free[body].pose.displacement,
-                                                                 it_.flow->options.gravity, moving.time(), dt)).second;
+                                                                 given_.domain.bodies[body].shape.centre + state_.free[body].pose.displacement,
+                                                                 given_.flow->options.gravity, moving.time(), dt)).second;
             step.guess_response(around.density(0), around.viscosity(0));
         }
-        if (it_.contact) {
-            contacts_.emplace(it_.domain, *it_.contact, it_.flow->options.regions[0]->viscosity(0), free_, moving.time(), dt);
+        if (given_.contact) {
+            contacts_.emplace(given_.domain, *given_.contact, given_.flow->options.regions[0]->viscosity(0), free_, moving.time(), dt);
             contacts_->guess();
         }
         return places();
@@ -249,11 +249,11 @@ private:
 
     /// Where liquid bodies are expected, if the flow goes on as in the step before.
     void expect_liquids(const Mesh& before, double end) {
-        const std::vector<Region> liquids = liquids_of(it_);
+        const std::vector<Region> liquids = liquids_of(given_);
         if (liquids.empty()) return;
         const double t = state_.moving.time();
-        const FlowState flow = flow_state(it_, state_.fields);
-        liquids_.emplace(liquids, before, flow.velocity, flow_rate(it_, state_.fields), t, end - t);
+        const FlowState flow = flow_state(given_, state_.fields);
+        liquids_.emplace(liquids, before, flow.velocity, flow_rate(given_, state_.fields), t, end - t);
         settled_.reset();
     }
     [[nodiscard]] std::vector<BodyCourse> courses() const { return liquids_ ? liquids_->courses() : std::vector<BodyCourse>{}; }
@@ -266,7 +266,7 @@ private:
         return verdict == LiquidStep::Verdict::arrived;
     }
     [[nodiscard]] Array<Vertex, Vec3> rate_over(const StepToSolve& step, const FlowState& flow) const {
-        const FlowState begin = flow_state(it_, state_.fields);
+        const FlowState begin = flow_state(given_, state_.fields);
         Array<Vertex, Vec3> rate(flow.velocity.size());
         for (Vertex v : rate.indices())
             if (alive(step.current, v)) rate[v] = (flow.velocity[v] - begin.velocity[v]) / step.dt;
@@ -276,7 +276,7 @@ private:
     /// The velocities of the surfaces of bodies.
     [[nodiscard]] std::vector<std::function<RigidVelocity(double)>> surface_velocities(double dt) const {
         std::vector<std::function<RigidVelocity(double)>> velocities;
-        for (const Body& body : it_.domain.bodies)
+        for (const Body& body : given_.domain.bodies)
             velocities.push_back([&body, dt](double t) { return velocity_of(body, t, dt); });
         for (const auto& [body, step] : free_) velocities[body] = [&step = step](double t) { return step.velocity(t); };
         return velocities;
@@ -305,10 +305,10 @@ private:
             flow = *settled_;
             return Solved{};
         }
-        FlowOptions options = it_.flow->options;
+        FlowOptions options = given_.flow->options;
         options.bodies = surface_velocities(step.dt);
         options.tolerance = of_forces;
-        flow = flow_state(it_, state_.fields);
+        flow = flow_state(given_, state_.fields);
         solved.density_before = flow.density;
         try {
             report.flow = step_flow(ranks_, step.before, step.current, options, flow, step.time, step.dt, expected_);
@@ -316,7 +316,7 @@ private:
             unsolved_ = error.what();
             return NotSolved{unsolved_};
         }
-        if (const double most = it_.time.courant.value_or(INFINITY); report.flow.largest_courant > let_pass * most)
+        if (const double most = given_.time.courant.value_or(INFINITY); report.flow.largest_courant > let_pass * most)
             return NotSolved{fmt::format("the flow crosses {:.3g} heights of a cell, more than time.courant = {}",
                                          report.flow.largest_courant, most),
                              step.dt * most / report.flow.largest_courant};
@@ -328,34 +328,34 @@ private:
 
     void solve_heat(const StepToSolve& step) {
         HeatReport heat =
-            step_heat(ranks_, step.before, step.current, *it_.heat, flow_, state_.fields.front(), step.time, step.dt, expected_);
-        report.warnings = beyond_tables(*it_.heat, step.current, temperature(), step.time + step.dt);
+            step_heat(ranks_, step.before, step.current, *given_.heat, flow_, state_.fields.front(), step.time, step.dt, expected_);
+        report.warnings = beyond_tables(*given_.heat, step.current, temperature(), step.time + step.dt);
         report.heat = std::move(heat);
     }
 
     void solve_species(const StepToSolve& step, std::size_t s) {
-        Concentrations values = concentrations(it_, s, state_.fields);
-        report.species.resize(it_.species.size());
-        report.species[s] = step_species(ranks_, step.before, step.current, it_.species[s], materials(), flow_,
+        Concentrations values = concentrations(given_, s, state_.fields);
+        report.species.resize(given_.species.size());
+        report.species[s] = step_species(ranks_, step.before, step.current, given_.species[s], materials(), flow_,
                                          report.heat.surfaces, values, step.time, step.dt);
-        for (const SpeciesField& field : species_fields(it_))
+        for (const SpeciesField& field : species_fields(given_))
             if (field.species == s) state_.fields[field.place].values = std::move(values[field.region]);
     }
 
     /// How materials move.
     [[nodiscard]] HeatOptions materials() const {
-        if (it_.heat) return *it_.heat;
-        HeatOptions options{.regions = std::vector<HeatRegion>(it_.domain.bodies.size() + 1)};
+        if (given_.heat) return *given_.heat;
+        HeatOptions options{.regions = std::vector<HeatRegion>(given_.domain.bodies.size() + 1)};
         for (std::size_t r = 0; r < options.regions.size(); ++r) {
-            options.regions[r].name = region_name(it_.domain, r);
-            const bool by_flow = r == 0 || it_.liquid[r - 1] != 0 || rests_on_faces(it_, r - 1);
+            options.regions[r].name = region_name(given_.domain, r);
+            const bool by_flow = r == 0 || given_.liquid[r - 1] != 0 || rests_on_faces(given_, r - 1);
             options.regions[r].carried = by_flow ? Carried::at_rest : Carried::with_mesh;
         }
         return options;
     }
 
     State& state_;
-    const Case& it_;
+    const Case& given_;
     const Ranks& ranks_;
     Fields fields_;
     MaterialFlow flow_;
@@ -374,33 +374,33 @@ struct TakenBack {};
 
 }  // namespace
 
-AdaptOptions adapt_options(const Case& it, const Watch* watch) {
-    return {.floor = it.quality.max_aspect_ratio, .seed = it.random.seed, .paper = it.quality.paper, .watch = watch};
+AdaptOptions adapt_options(const Case& given, const Watch* watch) {
+    return {.floor = given.quality.max_aspect_ratio, .seed = given.random.seed, .paper = given.quality.paper, .watch = watch};
 }
 
-StepReport time_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
-    Simulation simulation(state, it, ranks);
+StepReport time_step(State& state, const Case& given, const Ranks& ranks, const StepOptions& options) {
+    Simulation simulation(state, given, ranks);
     StepReport& report = simulation.report;
     const auto states = [&] {
-        return body_states(it.domain, state.moving.reference(), it.heat ? &state.fields.front().values : nullptr);
+        return body_states(given.domain, state.moving.reference(), given.heat ? &state.fields.front().values : nullptr);
     };
     const std::vector<BodyState> before = states();
     report.mesh = simulation.advance(options);
     report.bodies = states();
-    if (it.contact) std::ranges::move(touch_warnings(it.domain, report.contact, report.mesh.time), std::back_inserter(report.warnings));
+    if (given.contact) std::ranges::move(touch_warnings(given.domain, report.contact, report.mesh.time), std::back_inserter(report.warnings));
     for (std::size_t body = 0; body < before.size(); ++body) {
         report.gains.push_back(report.bodies[body].volume - before[body].volume);
         report.velocities.push_back((report.bodies[body].place - before[body].place) / report.mesh.dt);
     }
-    for (std::size_t body = 0; it.flow && body < before.size(); ++body)
-        report.spins.push_back(it.free[body] ? state.free[body].spin
-                                             : velocity_of(it.domain.bodies[body], report.mesh.time, report.mesh.dt).spin);
+    for (std::size_t body = 0; given.flow && body < before.size(); ++body)
+        report.spins.push_back(given.free[body] ? state.free[body].spin
+                                             : velocity_of(given.domain.bodies[body], report.mesh.time, report.mesh.dt).spin);
     return std::move(report);
 }
 
-void take_step_back(State& state, const Case& it, const Ranks& ranks, const StepOptions& options) {
+void take_step_back(State& state, const Case& given, const Ranks& ranks, const StepOptions& options) {
     try {
-        (void)Simulation(state, it, ranks).advance(options, [](const Mesh&) { throw TakenBack{}; });
+        (void)Simulation(state, given, ranks).advance(options, [](const Mesh&) { throw TakenBack{}; });
     } catch (const TakenBack&) {
     }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/body_state.h"
-#include "app/case.h"
+#include "case/case.h"
 #include <kropla/simulate/fields.h>
 #include "simulate/partition.h"
 #include <kropla/step/advance.h>
@@ -39,7 +39,7 @@ struct StepReport {
     std::vector<StepWarning> warnings;
 };
 
-[[nodiscard]] AdaptOptions adapt_options(const Case& it, const Watch* watch = nullptr);
+[[nodiscard]] AdaptOptions adapt_options(const Case& given, const Watch* watch = nullptr);
 
 struct StepOptions {
     double dt;        // [s] wanted
@@ -49,9 +49,9 @@ struct StepOptions {
 /// Takes the state one step on, by `dt` or as much of it as can be done (`advance`), with what the case simulates. On any
 /// exception the state is as it was. Throws what `advance` does, SolverError if the solver does not converge,
 /// AllInterrupted if all ranks know that a watch says stop.
-[[nodiscard]] StepReport time_step(State& state, const Case& it, const Ranks& ranks, const StepOptions& options);
+[[nodiscard]] StepReport time_step(State& state, const Case& given, const Ranks& ranks, const StepOptions& options);
 
 /// Does all of such a step, and takes it back when nothing is left to do but to accept it.
-void take_step_back(State& state, const Case& it, const Ranks& ranks, const StepOptions& options);
+void take_step_back(State& state, const Case& given, const Ranks& ranks, const StepOptions& options);
 
 }  // namespace kropla

@@ -1,6 +1,7 @@
 #include "app/step_row.h"
 
-#include "app/case_heat.h"
+#include "case/body.h"
+#include "case/heat.h"
 #include <kropla/mesh/prisms.h>
 
 #include <fmt/format.h>
@@ -34,14 +35,14 @@ void add_contact(const StepReport& report, std::size_t body, const std::string& 
 }
 
 /// Is it of a liquid, and reaches through faces of the box?
-bool wets_faces(const Case& it, std::size_t body) {
-    return body < it.liquid.size() && it.liquid[body] != 0 && reached_faces(it.domain.bodies[body].shape) != 0;
+bool wets_faces(const Case& given, std::size_t body) {
+    return body < given.liquid.size() && given.liquid[body] != 0 && reached_faces(given.domain.bodies[body].shape) != 0;
 }
 
 /// Where each body is, how it goes, and how large and warm it is.
-void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
-    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body) {
-        const std::string name = column_name(it.domain.bodies[body].name);
+void add_bodies(const StepReport& report, const Case& given, StepRow& row) {
+    for (std::size_t body = 0; body < given.domain.bodies.size(); ++body) {
+        const std::string name = column_name(given.domain.bodies[body].name);
         const BodyState state = body < report.bodies.size() ? report.bodies[body] : BodyState{};
         const Vec3 velocity = body < report.velocities.size() ? report.velocities[body] : Vec3{};
         row.insert(row.end(), {{fmt::format("x_{} [m]", name), state.place.x},
@@ -52,10 +53,10 @@ void add_bodies(const StepReport& report, const Case& it, StepRow& row) {
                                {fmt::format("w_{} [m/s]", name), velocity.z},
                                {fmt::format("volume_{} [m^3]", name), state.volume},
                                {fmt::format("area_{} [m^2]", name), state.area}});
-        if (wets_faces(it, body)) row.push_back({fmt::format("wetted_{} [m^2]", name), state.on_faces});
-        if (it.flow) add_forces(report, body, name, row);
-        if (it.contact && it.free[body]) add_contact(report, body, name, row);
-        if (!it.heat) continue;
+        if (wets_faces(given, body)) row.push_back({fmt::format("wetted_{} [m^2]", name), state.on_faces});
+        if (given.flow) add_forces(report, body, name, row);
+        if (given.contact && given.free[body]) add_contact(report, body, name, row);
+        if (!given.heat) continue;
         const double leaves = body < report.heat.surfaces.size() ? report.heat.surfaces[body].total : 0;
         row.insert(row.end(), {{fmt::format("temperature_min_{} [K]", name), state.coldest},
                                {fmt::format("temperature_mean_{} [K]", name), state.mean},
@@ -89,7 +90,7 @@ void add_energy(const StepReport& report, const HeatOptions& heat, StepRow& row)
 }
 
 /// What passes the faces, and how the flow was solved for.
-void add_flow(const StepReport& report, const Case& it, StepRow& row) {
+void add_flow(const StepReport& report, const Case& given, StepRow& row) {
     const FlowReport& flow = report.flow;
     for (std::size_t face = 0; face < face_keys.size(); ++face)
         row.push_back({fmt::format("volume_out_{} [m^3/s]", face_keys[face]), flow.face_flux[face]});
@@ -98,10 +99,10 @@ void add_flow(const StepReport& report, const Case& it, StepRow& row) {
                            {"gravity_energy [J]", flow.energy.gravity},
                            {"dissipated [J]", flow.dissipated},
                            {"mass_error_surroundings [kg]", flow.mass_error}});
-    for (std::size_t body = 0; body < it.domain.bodies.size(); ++body)
-        if (it.liquid[body] != 0)
-            row.push_back({fmt::format("mass_error_{} [kg]", column_name(it.domain.bodies[body].name)),
-                           body < report.gains.size() ? it.flow->options.regions[body + 1]->density(0) * report.gains[body] : 0});
+    for (std::size_t body = 0; body < given.domain.bodies.size(); ++body)
+        if (given.liquid[body] != 0)
+            row.push_back({fmt::format("mass_error_{} [kg]", column_name(given.domain.bodies[body].name)),
+                           body < report.gains.size() ? given.flow->options.regions[body + 1]->density(0) * report.gains[body] : 0});
     row.insert(row.end(), {{"courant", flow.largest_courant},
                            {"flow_passes", static_cast<double>(flow.passes)},
                            {"flow_iterations", static_cast<double>(flow.iterations)},
@@ -109,10 +110,10 @@ void add_flow(const StepReport& report, const Case& it, StepRow& row) {
 }
 
 /// What there is of each species, and how far step and transfer missed it.
-void add_species(const StepReport& report, const Case& it, StepRow& row) {
-    for (std::size_t s = 0; s < it.species.size(); ++s) {
-        const std::string& name = it.species[s].name;
-        const std::size_t place = s + (it.heat ? 1 : 0);
+void add_species(const StepReport& report, const Case& given, StepRow& row) {
+    for (std::size_t s = 0; s < given.species.size(); ++s) {
+        const std::string& name = given.species[s].name;
+        const std::size_t place = s + (given.heat ? 1 : 0);
         const ContentReport amount = place < report.mesh.contents.size() ? report.mesh.contents[place] : ContentReport{};
         double error = 0;
         if (s < report.species.size())
@@ -127,7 +128,7 @@ void add_species(const StepReport& report, const Case& it, StepRow& row) {
 }  // namespace
 
 StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, const QualitySummary& quality,
-                 const Case& it) {
+                 const Case& given) {
     const Advanced& done = report.mesh;
     const auto count = [](auto number) { return static_cast<double>(number); };
     StepRow row = {{"step", count(step)},
@@ -157,11 +158,11 @@ StepRow step_row(std::int64_t step, const StepReport& report, const Mesh& mesh, 
                    {"transfer_seconds [s]", done.transfer_seconds},
                    {"mesh_cpu_seconds [s]", done.mesh_cpu_seconds},
                    {"transferred_fraction", done.transferred_fraction}};
-    add_bodies(report, it, row);
-    if (it.heat) add_energy(report, *it.heat, row);
-    add_species(report, it, row);
-    if (it.flow) add_flow(report, it, row);
-    if (it.contact) row.push_back({"contacts", count(std::ranges::count_if(report.contact.contacts, &ContactForce::touches))});
+    add_bodies(report, given, row);
+    if (given.heat) add_energy(report, *given.heat, row);
+    add_species(report, given, row);
+    if (given.flow) add_flow(report, given, row);
+    if (given.contact) row.push_back({"contacts", count(std::ranges::count_if(report.contact.contacts, &ContactForce::touches))});
     return row;
 }
 

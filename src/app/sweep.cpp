@@ -1,7 +1,7 @@
 // A case run for many values, one after another. Each run is a process of its own, which takes down no other with it.
 #include "app/sweep.h"
 
-#include "app/case.h"
+#include "case/case.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
@@ -108,19 +108,19 @@ public:
 
 private:
     void run(std::size_t number, const Watch& watch) {
-        const SweepRun& it = plan_.runs[number];
-        const fs::path folder = options_.out / it.name;
-        const auto before = std::ranges::find(known_, it.name, [](const SweepRow& row) { return row.run.name; });
-        SweepRow row = before != known_.end() ? *before : SweepRow{it};
+        const SweepRun& planned = plan_.runs[number];
+        const fs::path folder = options_.out / planned.name;
+        const auto before = std::ranges::find(known_, planned.name, [](const SweepRow& row) { return row.run.name; });
+        SweepRow row = before != known_.end() ? *before : SweepRow{planned};
         print(fmt::format("run {:>{}}/{}  {:<{}}  ", number + 1, fmt::formatted_size("{}", plan_.runs.size()),
-                          plan_.runs.size(), it.name, name_width_));
+                          plan_.runs.size(), planned.name, name_width_));
         if (before != known_.end() && row.code == done && is_complete(folder, cases_[number])) {
             rows_.push_back(row);
             return print("done before\n");
         }
         const auto start = std::chrono::steady_clock::now();
         make_folder(folder);
-        row.code = run_apart(words(it, folder), folder / log_name, watch);
+        row.code = run_apart(words(planned, folder), folder / log_name, watch);
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
         row.seconds += taken.count();
         interrupted_ = row.code == interrupted;
@@ -142,10 +142,10 @@ private:
     }
 
     /// What the run is told: to go on where it can; else to start, over what it left before its first checkpoint.
-    std::vector<std::string> words(const SweepRun& it, const fs::path& folder) const {
+    std::vector<std::string> words(const SweepRun& planned, const fs::path& folder) const {
         std::vector<std::string> words = {"run", options_.case_file.string(), "--out", folder.string()};
         words.push_back(fs::exists(folder / checkpoint_name) ? "--resume" : "--force");
-        for (const std::string& setting : settings_of(plan_, it)) words.insert(words.end(), {"--set", setting});
+        for (const std::string& setting : settings_of(plan_, planned)) words.insert(words.end(), {"--set", setting});
         if (options_.threads > 0) words.insert(words.end(), {"--threads", std::to_string(options_.threads)});
         words.insert(words.end(), options_.solver_options.begin(), options_.solver_options.end());
         return words;

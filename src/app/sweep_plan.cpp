@@ -1,7 +1,7 @@
 // Which runs a sweep has, and how their folders are called.
 #include "app/sweep_plan.h"
 
-#include "app/case_setting.h"
+#include "case/setting.h"
 #include <kropla/base/error.h>
 
 #include <fmt/format.h>
@@ -36,26 +36,26 @@ std::string in_name(std::string_view text) {
 
 Swept swept_by(const std::string& setting) {
     const auto [key, value] = parted_setting(setting);
-    Swept it{key, values_of_list(value)};
+    Swept swept{key, values_of_list(value)};
     std::vector<std::string> seen;
-    for (const std::string& each : it.values) {
+    for (const std::string& each : swept.values) {
         if (in_name(each).empty()) refuse(setting, "a value of the list is empty");
         if (std::ranges::find(seen, in_name(each)) != seen.end())
             refuse(setting, fmt::format("{} stands there twice", each));
         seen.push_back(in_name(each));
     }
-    return it;
+    return swept;
 }
 
 void check(const std::vector<Swept>& all) {
     std::size_t count = 1;
     std::vector<std::string> lists;
-    for (const Swept& it : all) {
-        if (std::ranges::count(all, it.key, &Swept::key) > 1)
-            throw CaseError(fmt::format("--set {}: is set twice", it.key));
-        if (it.values.size() == 1) continue;
-        count = std::min(count, most_runs) * it.values.size();  // beyond, it need not be exact
-        lists.push_back(fmt::format("{} of {}", it.values.size(), it.key));
+    for (const Swept& swept : all) {
+        if (std::ranges::count(all, swept.key, &Swept::key) > 1)
+            throw CaseError(fmt::format("--set {}: is set twice", swept.key));
+        if (swept.values.size() == 1) continue;
+        count = std::min(count, most_runs) * swept.values.size();  // beyond, it need not be exact
+        lists.push_back(fmt::format("{} of {}", swept.values.size(), swept.key));
     }
     if (lists.empty())
         throw CaseError("--set: a sweep needs a list of values, such as --set size.surface=1e-4,2e-4; kropla run takes "
@@ -81,11 +81,11 @@ SweepPlan plan_sweep(std::span<const std::string> settings) {
     check(all);
     std::vector<std::vector<std::string>> combinations(1);
     SweepPlan plan;
-    for (const Swept& it : all) {
-        plan.keys.push_back(it.key);
+    for (const Swept& swept : all) {
+        plan.keys.push_back(swept.key);
         std::vector<std::vector<std::string>> longer;
         for (const auto& combination : combinations)
-            for (const std::string& value : it.values) {
+            for (const std::string& value : swept.values) {
                 longer.push_back(combination);
                 longer.back().push_back(value);
             }

@@ -172,7 +172,7 @@ void join_to_tets(Mesh& mesh) {
         const Region region = layer_of(mesh, l).region;
         if (region == surroundings) continue;
         const auto [first, last] = walls.equal_range(triangle);  // both sides of one wall
-        for (auto it = first; it != last; ++it) mesh.layers[static_cast<std::size_t>(it->second.value)].body = region;
+        for (auto at = first; at != last; ++at) mesh.layers[static_cast<std::size_t>(at->second.value)].body = region;
     }
 }
 

@@ -25,8 +25,8 @@ Quantity at_start(const Quantity& quantity) {
     if (!quantity) return {};
     return [quantity](const Vec3& place, double) { return quantity(place, 0); };
 }
-HeatExchange at_start(const HeatExchange& it) {
-    return {at_start(it.coefficient), at_start(it.emissivity), at_start(it.ambient)};
+HeatExchange at_start(const HeatExchange& exchange) {
+    return {at_start(exchange.coefficient), at_start(exchange.emissivity), at_start(exchange.ambient)};
 }
 
 /// The options at t = 0, of which nothing changes any more.

@@ -1,6 +1,6 @@
 // Bodies that deform: their keys, and runs of them.
-#include "app/case.h"
-#include "case_text.h"
+#include "case/case.h"
+#include "case/case_text.h"
 #include "run_results.h"
 
 #include <gtest/gtest.h>

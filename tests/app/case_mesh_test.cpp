@@ -1,9 +1,9 @@
 // [domain] mesh: meshes that are brought.
 #include "../io/mesh_files.h"
-#include "app/case.h"
+#include "case/case.h"
 #include "app/commands.h"
 #include "app/first_mesh.h"
-#include "app/mesh_size.h"
+#include "case/mesh_size.h"
 #include <kropla/adapt/moving_mesh.h>
 #include <kropla/base/error.h>
 #include <kropla/mesh/quality.h>

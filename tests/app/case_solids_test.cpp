@@ -1,6 +1,6 @@
 // Slabs, cylinders and surfaces that are cut: their keys, and a run.
-#include "app/case.h"
-#include "case_text.h"
+#include "case/case.h"
+#include "case/case_text.h"
 #include "run_results.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The program as users meet it: what it says, and with which code it ends.
 #include "app/commands.h"
-#include "app/new_case.h"
-#include "case_text.h"
+#include "case/new_case.h"
+#include "case/case_text.h"
 #include <kropla/io/vtk.h>
 #include <kropla/mesh/quality.h>
 #include "program.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "case_text.h"
+#include "case/case_text.h"
 #include "program.h"
 #include "report/table.h"
 
