@@ -28,7 +28,7 @@ constexpr Region of_drop{1};
 /// A drop in a liquid of 1 Pa s, both without inertia.
 FlowOptions slow_drop(double viscosity) {
     return {.regions = {FlowRegion{.density = 1, .viscosity = 1}, FlowRegion{.density = 1, .viscosity = viscosity}},
-            .convection = false, .tolerance = 1e-5};
+            .convection = false, .tolerance = 1e-7};
 }
 
 double volume_of(const Mesh& mesh) {
