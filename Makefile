@@ -13,11 +13,13 @@
 # make bench-spread  ways to spread a body's displacement into its surroundings
 # make bench-transfer  1000 transfers to and fro, by interpolation and by projection: docs/transfer.md
 # make endurance  5000 steps of a droplet that wanders among bodies, bounds checked; STEPS=500: fewer
-# make validate   heat and flow, by problems with known solutions, as fine as the tests take them and finer: docs/validation.md
+# make validate   heat, flow and drops, by problems with known solutions, as fine as the tests take them and finer:
+#                 docs/validation.md
+# make validate-modes  drops that ring, in two modes, against theory: the same page
 # Each installs the Debian packages that are missing.
 
 .PHONY: all demo test flood bench bench-peers bench-flow bench-drop bench-engine bench-strategies bench-spread \
-        bench-transfer endurance validate packages configure clean
+        bench-transfer endurance validate validate-modes packages configure clean
 
 all: configure
 	cmake --build --preset release
@@ -90,6 +92,11 @@ validate: packages
 	cmake --preset bench
 	cmake --build --preset bench --target kropla_validate
 	build/bench/bin/kropla_validate
+
+validate-modes: packages
+	cmake --preset bench
+	cmake --build --preset bench --target kropla
+	bench/drop-modes build/bench/bin/kropla build/bench/modes
 
 clean:
 	rm -rf build demo flood

@@ -1,5 +1,6 @@
-// Problems with known solutions (tests/simulate/heat_problems.h, flow_known.h), as fine as the tests take them
-// and finer, in a table of heat and one of flow: docs/validation.md.
+// Problems with known solutions (tests/simulate/heat_problems.h, flow_known.h, drop_known.h), as fine as the tests
+// take them and finer, in tables of heat, of flow and of drops: docs/validation.md.
+#include "simulate/drop_known.h"
 #include "simulate/flow_known.h"
 #include "simulate/heat_problems.h"
 
@@ -46,6 +47,25 @@ const std::vector<Problem> flow = {
     {"sphere in a stream, Re 200", [](const Ranks& r, int f) { return sphere_in_stream(r, stream_200, f); }},
 };
 
+const std::vector<Problem> drops = {
+    {"drop in a sphere, 0.1", [](const Ranks& r, int f) { return drop_in_sphere(r, in_sphere_01, f); }},
+    {"drop in a sphere, 1", [](const Ranks& r, int f) { return drop_in_sphere(r, in_sphere_1, f); }},
+    {"drop in a sphere, 10", [](const Ranks& r, int f) { return drop_in_sphere(r, in_sphere_10, f); }},
+    {"drop in a sphere, 25", [](const Ranks& r, int f) { return drop_in_sphere(r, in_sphere_25, f); }},
+    {"drop to the floor, h = 1.5, 0.1", [](const Ranks& r, int f) { return drop_to_floor(r, near_floor_01, f); }},
+    {"drop to the floor, h = 1.5, 1", [](const Ranks& r, int f) { return drop_to_floor(r, near_floor_1, f); }},
+    {"drop to the floor, h = 1.5, 25", [](const Ranks& r, int f) { return drop_to_floor(r, near_floor_25, f); }},
+    {"drop to the floor, h = 2, 0.1", [](const Ranks& r, int f) { return drop_to_floor(r, above_floor_01, f); }},
+    {"drop to the floor, h = 2, 1", [](const Ranks& r, int f) { return drop_to_floor(r, above_floor_1, f); }},
+    {"drop to the floor, h = 2, 25", [](const Ranks& r, int f) { return drop_to_floor(r, above_floor_25, f); }},
+    {"drop in a stream, 1, Re 10", [](const Ranks& r, int f) { return drop_in_stream(r, like_10, f); }},
+    {"drop in a stream, 1, Re 50", [](const Ranks& r, int f) { return drop_in_stream(r, like_50, f); }},
+    {"drop in a stream, 1, Re 100", [](const Ranks& r, int f) { return drop_in_stream(r, like_100, f); }},
+    {"drop in a stream, 10, Re 10", [](const Ranks& r, int f) { return drop_in_stream(r, heavy_10, f); }},
+    {"drop in a stream, 10, Re 50", [](const Ranks& r, int f) { return drop_in_stream(r, heavy_50, f); }},
+    {"drop in a stream, 10, Re 100", [](const Ranks& r, int f) { return drop_in_stream(r, heavy_100, f); }},
+};
+
 void print_rows(const Problem& problem, int fineness, const Outcome& outcome) {
     for (std::size_t k = 0; k < outcome.reached.size(); ++k) {
         const Reached& value = outcome.reached[k];
@@ -88,6 +108,8 @@ int main(int count, char** words) {
         print_table(petsc, heat, wanted, true);
         std::puts("");
         print_table(petsc, flow, wanted, false);
+        std::puts("");
+        print_table(petsc, drops, wanted, false);
         return EXIT_SUCCESS;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());

@@ -10,7 +10,6 @@
 #include "flow_problems.h"
 
 #include <kropla/adapt/moving_mesh.h>
-#include <kropla/mesh/prisms.h>
 #include <kropla/step/advance.h>
 #include <kropla/step/initial_mesh.h>
 
@@ -32,11 +31,6 @@ constexpr double stokes_drag = 6 * pi;  // [N] of the sphere at 1 m/s
 FlowOptions around_body(double density) {
     return {.regions = {FlowRegion{.density = density, .viscosity = 1}, {}}, .convection = false,
             .tolerance = 1e-5};
-}
-
-std::string in_words(const Mesh& mesh) {
-    return std::to_string(mesh.layers[0].triangles.size()) + " triangles on the sphere, " +
-           std::to_string(count_prisms(mesh)) + " prisms, " + std::to_string(count_tets(mesh)) + " tets";
 }
 
 /// On the sphere that moves by 1 m/s along z, of what lasts on this mesh.

@@ -4,6 +4,8 @@
 //   [Fornberg 1988] Steady viscous flow past a sphere at high Reynolds numbers. J. Fluid Mech. 190: 1.0852 at 100.
 #include "flow_known.h"
 
+#include "flow_problems.h"
+
 #include <kropla/mesh/cells.h>
 #include <kropla/mesh/prisms.h>
 #include <kropla/simulate/heat.h>
@@ -145,8 +147,7 @@ Outcome sphere_in_stream(const Ranks& ranks, const KnownStream& known, int finen
     options.scheme = FlowScheme::steady;
     options.tolerance = 1e-4;
     const FlowReport report = step_flow(ranks, mesh, mesh, options, state, 0, 1);
-    Outcome outcome{.mesh = std::to_string(mesh.layers[0].triangles.size()) + " triangles on the sphere, " +
-                            std::to_string(count_prisms(mesh)) + " prisms, " + std::to_string(count_tets(mesh)) + " tets",
+    Outcome outcome{.mesh = in_words(mesh),
                     .steps = "three of first order, one steady",
                     .reached = {{"drag coefficient [-]", known.drag, report.bodies[0].force.z / (0.5 * pi * radius * radius)}},
                     .passes = report.passes};

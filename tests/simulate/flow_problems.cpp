@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "simulate/elements.h"
+#include <kropla/mesh/prisms.h>
 
 #include <algorithm>
 #include <cmath>
@@ -130,6 +131,11 @@ Mesh sphere_in_cube(const SphereInCube& shape) {
     give_volume(mesh, shape.radius, thick);
     if (shape.round) give_outer_volume(mesh, shape.half, thick);
     return mesh;
+}
+
+std::string in_words(const Mesh& mesh) {
+    return std::to_string(mesh.layers[0].triangles.size()) + " triangles on the sphere, " +
+           std::to_string(count_prisms(mesh)) + " prisms, " + std::to_string(count_tets(mesh)) + " tets";
 }
 
 Vec3 stokes_velocity(const Vec3& place, double radius, double speed) {

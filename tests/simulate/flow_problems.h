@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 namespace kropla {
 
@@ -34,6 +35,9 @@ struct SphereInCube {
     bool round = false;  // in a sphere of radius `half` instead of the cube
 };
 Mesh sphere_in_cube(const SphereInCube& shape);
+
+/// How many triangles are under the mesh's first layer, how many prisms and tets there are: for a table.
+std::string in_words(const Mesh& mesh);
 
 /// The flow of speed `speed` along z around a fixed sphere that viscosity alone makes [Stokes 1851], and its
 /// pressure for a viscosity of 1.

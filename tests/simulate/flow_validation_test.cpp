@@ -1,5 +1,6 @@
-// Flows whose forces are known (flow_known.h). Bounds are what is reached and a tenth; docs/validation.md has
+// Flows whose forces are known (flow_known.h, drop_known.h). Bounds are what is reached and a tenth; docs/validation.md has
 // the finer meshes, by `make validate`.
+#include "drop_known.h"
 #include "flow_known.h"
 #include "session.h"
 
@@ -38,6 +39,14 @@ TEST(FlowValidation, SphereThatSwings) {
 
 TEST(FlowValidation, SphereInAStream) {
     expect_within(sphere_in_stream(petsc().all_ranks(), stream_20, 1), {3.29, 2.74});
+}
+
+TEST(FlowValidation, DropInASphere) { expect_within(drop_in_sphere(petsc().all_ranks(), in_sphere_1, 1), {0.58}); }
+
+TEST(FlowValidation, DropBeforeAFloor) { expect_within(drop_to_floor(petsc().all_ranks(), near_floor_1, 1), {0.96}); }
+
+TEST(FlowValidation, DropInAStream) {
+    expect_within(drop_in_stream(petsc().all_ranks(), heavy_50, 1), {1.85, 13.9});
 }
 
 }  // namespace
