@@ -32,6 +32,8 @@ struct HeatStep {
     Array<Region, MaterialState> material = {};
     Array<Vertex, double> guess = {};  // [K] about which all that is not linear is taken as linear
     Array<Vertex, char> low = {};      // vertices whose cells are to be of low order (bounded.h); empty: none
+
+    [[nodiscard]] bool steps(Region region) const { return !only.exists() || region == only; }
 };
 
 /// Of each region; per mass of this one.
