@@ -20,6 +20,11 @@ template <std::size_t n>
     return values.empty() ? value : mean_of(at_corners(values, vertices));
 }
 
+/// When a stage is, as a share of the step, and its weight in the means over the step.
+struct StageTime {
+    double share, weight;
+};
+
 /// A stage of a step: all that a cell needs to know of it. Arrays that are empty are of zeros.
 struct FlowStage {
     const Mesh& mesh;                          // for its connectivity

@@ -3,20 +3,19 @@
 //     solved no better than the pass deserves.
 // The derivative is kept from pass to pass, and from the first stage to the second, while it serves.
 #include <kropla/base/error.h>
-#include "simulate/assembly.h"
+#include "simulate/expanding_gas.h"
+#include "simulate/flow_balance.h"
 #include "simulate/flow_cell.h"
 #include "simulate/flow_conditions.h"
 #include "simulate/flow_energy.h"
-#include "simulate/flow_mass.h"
+#include "simulate/flow_forces.h"
 #include "simulate/flow_scales.h"
 #include "simulate/flow_surfaces.h"
 #include "simulate/stop.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <sstream>
 
@@ -59,7 +58,7 @@ public:
           solver_(ranks, blocks_, unknowns()) {
         system_.value = solver_.values();
         find_pressures();
-        find_masses();
+        find_expanding();
         if (!steady()) mesh_velocity_ = mesh_velocities(before, current, dt);
     }
 
@@ -94,17 +93,9 @@ public:
         report.iterations = solver_.iterations();
         report.passes = passes_;
         report.error = error_;
-        const Array<Vertex, Vec3> reaction = reactions();
-        for (const SolidSurface& solid : boundary_.solids) {
-            BodyForce of{solid.body, solid.centre};
-            for (Vertex v : solid.vertices) {
-                of.force -= reaction[v];
-                of.torque -= cross(current_.position[v] - solid.centre, reaction[v]);
-            }
-            of.flux = flux_through(solid.facets, current_.position, guess_.velocity);
-            report.net_flux += of.flux;
-            report.bodies.push_back(of);
-        }
+        const Array<Vertex, Vec3> reaction = reactions(ranks_, blocks_.pattern, reaction_);
+        report.bodies = body_forces(boundary_, current_.position, guess_.velocity, reaction);
+        for (const BodyForce& body : report.bodies) report.net_flux += body.flux;
         for (std::size_t face = 0; face < 6; ++face) {
             report.face_flux[face] = flux_through(boundary_.faces[face], current_.position, guess_.velocity);
             report.net_flux += report.face_flux[face];
@@ -114,7 +105,7 @@ public:
         report.energy.surface = surfaces_.energy();
         report.dissipated = dissipated_;
         report_mass(report);
-        report.face_force = face_forces(reaction);
+        report.face_force = face_forces(options_, boundary_, numbering().vertex, reaction);
         report.largest_courant = largest_courant();
         return report;
     }
@@ -122,30 +113,24 @@ public:
     /// The state at the step's end: zero where nothing flows.
     [[nodiscard]] FlowState state() const {
         FlowState end = still_flow(current_);
+        const double mean = conditions_.closed ? mean_pressure() : 0;
         for (Vertex v : numbering().vertex) {
             end.velocity[v] = guess_.velocity[v];
-            end.pressure[v] = guess_.pressure[v];
+            end.pressure[v] = guess_.pressure[v] - mean;
         }
-        if (masses_) end.density = masses_->densities(1);
-        if (conditions_.closed) {
-            double sum = 0, volume = 0;
-            for_each_share(current_, cells_, [&](const auto& cell, Vertex v, double share) {
-                sum += share * pressure_at(v, cell_region(current_, cell));
-                volume += share;
-            });
-            for_each_unknown([&](std::size_t, Vertex v, bool further) {
-                if (!further) end.pressure[v] -= sum / volume;
-            });
-            set_within(end, sum / volume);
-        } else {
-            set_within(end, 0);
-        }
+        set_within(end, mean);
+        if (gas_) end.density = gas_->densities();
         return end;
     }
 
 private:
+    [[nodiscard]] bool steady() const { return options_.scheme == FlowScheme::steady; }
     [[nodiscard]] const SparseRows& rows() const { return blocks_.pattern.rows; }
-    [[nodiscard]] const UpperSides& upper() const { return blocks_.pattern.numbering.upper; }
+    [[nodiscard]] const Numbering& numbering() const { return blocks_.pattern.numbering; }
+    [[nodiscard]] const UpperSides& upper() const { return numbering().upper; }
+    [[nodiscard]] Vertex vertex_of(std::size_t owned_row) const {
+        return numbering().vertex[static_cast<std::size_t>(rows().first_row) + owned_row];
+    }
     /// Calls `visit(global row, vertex, whether the row is the vertex's further one)`.
     template <class Visit>
     void for_each_unknown(const Visit& visit) const {
@@ -174,6 +159,14 @@ private:
                 if (!upper()[v].exists()) guess_.pressure[v] = guess_.within[as_size(region.value - 1)][v];
         });
     }
+    [[nodiscard]] double mean_pressure() const {
+        double sum = 0, volume = 0;
+        for_each_share(current_, cells_, [&](const auto& cell, Vertex v, double share) {
+            sum += share * pressure_at(v, cell_region(current_, cell));
+            volume += share;
+        });
+        return sum / volume;
+    }
     /// At the end, less the mean.
     void set_within(FlowState& end, double mean) const {
         if (upper().empty()) return;
@@ -184,26 +177,15 @@ private:
                 if (region.value > 0) end.within[as_size(region.value - 1)][v] = pressure_at(v, region) - mean;
         });
     }
-    [[nodiscard]] const Numbering& numbering() const { return blocks_.pattern.numbering; }
-    [[nodiscard]] bool steady() const { return options_.scheme == FlowScheme::steady; }
-    [[nodiscard]] Vertex vertex_of(std::size_t owned_row) const {
-        return numbering().vertex[static_cast<std::size_t>(rows().first_row) + owned_row];
-    }
 
     void report_mass(FlowReport& report) const {
-        if (!masses_) {
-            const auto flowing = std::ranges::find_if(options_.regions, [](const auto& region) { return region.has_value(); });
-            report.mass_error = dt_ * report.net_flux * (*flowing)->density(0);
+        if (gas_) {
+            report.through = gas_->through();
+            report.mass_error = gas_->mass_error();
             return;
         }
-        double out = 0;
-        for (std::size_t face = 0; face < 6; ++face)
-            for (Vertex v : numbering().vertex)
-                if (const double rate = passed_[face].empty() ? 0 : passed_[face][v]; rate != 0) {
-                    report.through.push_back({v, face, rate});
-                    out += rate;
-                }
-        report.mass_error = dt_ * out + std::accumulate(gained_.begin(), gained_.end(), 0.0);
+        const auto flowing = std::ranges::find_if(options_.regions, [](const auto& region) { return region.has_value(); });
+        report.mass_error = dt_ * report.net_flux * (*flowing)->density(0);
     }
 
     [[nodiscard]] FlowUnknowns unknowns() const {
@@ -221,21 +203,16 @@ private:
                 if (conditions_.fixed[v][static_cast<std::size_t>(m)]) guess_.velocity[v][m] = velocity[v][m];
     }
 
-    /// When a stage is, as a share of the step, and its weight in the means over the step.
-    struct StageTime {
-        double share, weight;
-    };
-
     void solve_stage(const StageTime& at, const Array<Vertex, Vec3>& old, double per_time) {
         const Array<Vertex, Vec3> position = between(before_, current_, at.share);
         const double time = t_ + at.share * dt_;
-        if (masses_) let_expand(at, position);
+        if (gas_) gas_->begin(at, position, guess_.velocity, mesh_velocity_);
         set_forces(current_, position, options_, time, material_);
         const auto open_pressure = open_pressures(position, options_, boundary_, time);
         const FlowStage stage{current_,         position,  mesh_velocity_,     old,
                               guess_,           material_, conditions_.open,   open_pressure,
                               options_.gravity, per_time,  options_.convection, upper()};
-        find_shares(position);
+        if (conditions_.closed) share_of_volume_ = shares_of_volume(current_, cells_, numbering(), position);
         surfaces_.begin(position, mesh_velocity_, at.share * dt_);
         const bool fresh = !solver_.has_matrix();
         assemble(stage, fresh);
@@ -255,69 +232,28 @@ private:
             const double before = left;
             left = solver_.size(system_.residual);
             const double reduction = left / before;
-            if (left <= wanted || reduction * reduction * left <= wanted)
-                continue;  // two more passes as this one
+            if (left <= wanted || reduction * reduction * left <= wanted) continue;  // two more passes as this one
             if (left > stagnation * before && left <= rounding * solver_.size_of_terms(unknown())) break;
             assemble(stage, true);
             take_matrix(stage);
             left = solver_.size(system_.residual);
         }
         if (left > 0) error_ = left / largest_left_;
-        if (!conditions_.closed) let_rest_out(position);
-        if (masses_) note_passed(at.weight, position);
+        if (!conditions_.closed)
+            let_rest_out(ranks_, blocks_.pattern, boundary_, conditions_, position,
+                         gas_ ? gas_->densities() : Array<Vertex, double>(), system_.residual, guess_.velocity);
+        if (gas_) gas_->end(at, position, guess_.velocity);
         dissipated_ += at.weight * dt_ * dissipation(current_, cells_, position, material_, guess_.velocity);
         surfaces_.end(guess_.velocity, at.weight * dt_);
     }
 
-    /// Where the density depends on the temperature.
-    void find_masses() {
-        for (Region r : material_.indices()) {
-            if (material_[r].densities.empty()) continue;
-            expanding_ = r;
-            const Array<Vertex, double>& end = material_[r].densities;
-            masses_.emplace(before_, current_, cells_, start_.density.empty() ? end : start_.density,
-                            end, dt_);
-            if (!steady()) material_[r].density_rate = masses_->density_rate();
-            gained_ = Array<Vertex, double>(end.size(), 0.0);
-        }
-    }
-
-    /// Sets the densities of a stage, and what its vertices gain, by the volume that this takes: as it is then, but for the
-    /// last one, that in the step all is gained that there is to gain. Where the mesh goes otherwise than the velocity of a
-    /// solid body has it, for a moment, mass would pass its surface: that is the same in all.
-    void let_expand(const StageTime& at, const Array<Vertex, Vec3>& position) {
-        Array<Vertex, double>& density = material_[expanding_].densities;
-        density = masses_->densities(at.share);
-        expansion_ = Array<Vertex, double>(density.size(), 0.0);
-        if (steady()) return;
-        const Array<Vertex, double> mass = masses_->masses(at.share);
-        Array<Vertex, double> rate = masses_->rates(at.share);
-        if (at.share == 1) {
-            const Array<Vertex, double> begin = masses_->masses(0);
-            for (Vertex v : rate.indices()) rate[v] = (mass[v] - begin[v] - gained_[v]) / (at.weight * dt_);
-        }
-        for (Vertex v : rate.indices()) gained_[v] += at.weight * dt_ * rate[v];
-        Array<Vertex, Vec3> passing = guess_.velocity;
-        for (Vertex v : passing.indices()) passing[v] -= mesh_velocity_[v];
-        double leak = 0;
-        for (const SolidSurface& solid : boundary_.solids)
-            for_each_flux(solid.facets, position, passing, [&](Vertex v, double flux) {
-                rate[v] += density[v] * flux;
-                leak += density[v] * flux;
-            });
-        const double all = std::accumulate(mass.begin(), mass.end(), 0.0);
-        for (Vertex v : numbering().vertex) expansion_[v] = (rate[v] - leak * mass[v] / all) / density[v];
-    }
-
-    /// Adds what passed the faces in a stage to the means over the step.
-    void note_passed(double weight, const Array<Vertex, Vec3>& position) {
-        const Array<Vertex, double>& density = material_[expanding_].densities;
-        for (std::size_t face = 0; face < 6; ++face) {
-            Array<Vertex, double>& passed = passed_[face];
-            passed.resize(position.size(), 0.0);
-            for_each_flux(boundary_.faces[face], position, guess_.velocity,
-                          [&](Vertex v, double flux) { passed[v] += weight * density[v] * flux; });
-        }
+    /// Where the density depends on the temperature: what flows then is one region alone.
+    void find_expanding() {
+        for (FlowMaterial& material : material_)
+            if (const Array<Vertex, double>& end = material.densities; !end.empty())
+                gas_.emplace(VertexMasses(before_, current_, cells_,
+                                          start_.density.empty() ? end : start_.density, end, dt_),
+                             numbering().vertex, boundary_, material, dt_);
     }
 
     [[noreturn]] void give_up(int pass, double left) const {
@@ -329,61 +265,14 @@ private:
 
     void assemble(const FlowStage& stage, bool derivative) {
         heed(ranks_);
-        assemble_blocks(
-            current_, blocks_,
-            [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
-            system_, ranks_.watch);
+        assemble_blocks(current_, blocks_,
+                        [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
+                        system_, ranks_.watch);
         surfaces_.add(guess_.velocity, stage.per_time > 0 ? 1 / stage.per_time : 0, derivative, system_);
-        for (std::size_t r = 0; r < rows().count() && masses_; ++r)
-            system_.residual[block_size * r + 3] += expansion_[vertex_of(r)];
+        for (std::size_t r = 0; r < rows().count() && gas_; ++r)
+            system_.residual[block_size * r + 3] += gas_->expansion(vertex_of(r));
         reaction_ = system_.residual;
-        if (conditions_.closed) spread_net_flux();
-    }
-
-    /// What the given velocities let in more than out, as rounding and facets have it, is spread over the
-    /// volume.
-    void spread_net_flux() {
-        double mine = 0, net = 0;
-        for (std::size_t r = 0; r < rows().count(); ++r) mine += system_.residual[block_size * r + 3];
-        MPI_Allreduce(&mine, &net, 1, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
-        for (std::size_t r = 0; r < rows().count(); ++r)
-            system_.residual[block_size * r + 3] -= net * share_of_volume_[static_cast<std::size_t>(rows().first_row) + r];
-    }
-
-    /// What is left of the residual of the whole volume, goes out through open faces, at one velocity along their normals:
-    /// what passes the boundary is balanced to rounding however well the stage is solved. As OpenFOAM's adjustPhi.
-    void let_rest_out(const Array<Vertex, Vec3>& position) {
-        const auto density = [&](Vertex v) { return masses_ ? material_[expanding_].densities[v] : 1.0; };
-        double mine = 0, rest = 0;
-        for (std::size_t r = 0; r < rows().count(); ++r) mine += density(vertex_of(r)) * system_.residual[block_size * r + 3];
-        MPI_Allreduce(&mine, &rest, 1, MPI_DOUBLE, MPI_SUM, ranks_.communicator);
-        Array<Vertex, Vec3> outward(position.size());
-        for (std::size_t face = 0; face < 6; ++face) {
-            const auto axis = static_cast<int>(face / 2);
-            for (const auto& facet : boundary_.faces[face])
-                for (Vertex v : facet)
-                    if (conditions_.open[face] && !conditions_.fixed[v][face / 2]) outward[v][axis] = face % 2 == 0 ? -1 : 1;
-        }
-        double passing = 0;
-        for (const auto& facets : boundary_.faces)
-            for_each_flux(facets, position, outward, [&](Vertex v, double flux) { passing += density(v) * flux; });
-        if (!(passing > 0)) return;
-        for (Vertex v : numbering().vertex) guess_.velocity[v] -= rest / passing * outward[v];
-    }
-
-    void find_shares(const Array<Vertex, Vec3>& position) {
-        if (!conditions_.closed) return;
-        share_of_volume_.assign(numbering().vertex.size(), 0.0);
-        double total = 0;
-        for_each_cell(cells_, [&](const auto& cell) {
-            const auto vertices = cell_vertices(current_, cell);
-            const double part = total_volume(cell_points(corners(position, current_, cell)));
-            total += part;
-            for (Vertex v : vertices)
-                share_of_volume_[as_size(numbering().row_at(v, cell_region(current_, cell)))] +=
-                    part / static_cast<double>(vertices.size());
-        });
-        for (double& share : share_of_volume_) share /= total;
+        if (conditions_.closed) spread_net_flux(ranks_, rows(), share_of_volume_, system_.residual);
     }
 
     void add(const std::vector<double>& correction) {
@@ -424,50 +313,6 @@ private:
         return all;
     }
 
-    /// Where faces meet, each direction is of the one across it, else of all alike that hold it.
-    [[nodiscard]] std::array<Vec3, 6> face_forces(const Array<Vertex, Vec3>& reaction) const {
-        Array<Vertex, unsigned> faces(reaction.size(), 0);  // that a vertex stands on, a bit each
-        for (std::size_t face = 0; face < 6; ++face)
-            for (const auto& facet : boundary_.faces[face])
-                for (Vertex v : facet) faces[v] |= 1u << face;
-        for (const SolidSurface& solid : boundary_.solids)
-            for (Vertex v : solid.vertices) faces[v] = 0;
-        for (Vertex v : boundary_.fixed_walls) faces[v] = 0;
-        std::array<Vec3, 6> forces = {};
-        for (int m = 0; m < 3; ++m) {
-            const unsigned across = 3u << (2 * m);
-            unsigned hold = 0;  // this direction of the velocity
-            for (std::size_t face = 0; face < 6; ++face) {
-                const FlowFace::Kind kind = options_.faces[face].kind;
-                const bool along = kind == FlowFace::Kind::wall || kind == FlowFace::Kind::velocity;
-                const bool slips = kind == FlowFace::Kind::slip && (across >> face & 1u) != 0;
-                if (along || slips) hold |= 1u << face;
-            }
-            for (Vertex v : numbering().vertex) {
-                const unsigned all = faces[v] & hold, those = (all & across) != 0 ? all & across : all;
-                for (std::size_t face = 0; face < 6; ++face)
-                    if ((those >> face & 1u) != 0)
-                        forces[face][m] -= reaction[v][m] / std::popcount(those);
-            }
-        }
-        return forces;
-    }
-
-    /// The residuals of momentum at all vertices, on all ranks.
-    [[nodiscard]] Array<Vertex, Vec3> reactions() const {
-        std::vector<double> all(3 * numbering().vertex.size(), 0.0);
-        for (std::size_t r = 0; r < rows().count(); ++r)
-            for (std::size_t m = 0; m < 3; ++m)
-                all[3 * (static_cast<std::size_t>(rows().first_row) + r) + m] = reaction_[block_size * r + m];
-        MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM,
-                      ranks_.communicator);
-        Array<Vertex, Vec3> reaction(current_.position.size());
-        for_each_unknown([&](std::size_t r, Vertex v, bool further) {
-            if (!further) reaction[v] = {all[3 * r], all[3 * r + 1], all[3 * r + 2]};
-        });
-        return reaction;
-    }
-
     [[nodiscard]] double largest_courant() const {
         if (steady()) return 0;
         const std::array<Array<Vertex, double>, 6> none;
@@ -491,11 +336,7 @@ private:
     FlowSurfaces surfaces_;
     FlowConditions conditions_;
     Array<Region, FlowMaterial> material_;
-    Region expanding_;                     // whose density depends on the temperature; only then:
-    std::optional<VertexMasses> masses_;
-    Array<Vertex, double> gained_;         // [kg] in the stages so far
-    Array<Vertex, double> expansion_;      // [m^3/s] what it takes in this one
-    std::array<Array<Vertex, double>, 6> passed_;  // [kg/s] out through faces, in the mean over the step
+    std::optional<ExpandingGas> gas_;  // if the density depends on the temperature
     FlowState guess_;
     BlockSystem system_;
     std::vector<double> reaction_;  // the residual of the last assembly, as it is
