@@ -298,7 +298,8 @@ private:
     }
 
     Answer solve_flow(const StepToSolve& step, FlowState& flow, SolvedFlow& solved) {
-        constexpr double of_forces = 1e-4;  // [-] of what changes in a step
+        constexpr double of_forces = 1e-4;  // [-] of what changes in a step, and
+        constexpr double of_motion = 1e-6;  // [-] of it where they move bodies: speeds add up what they miss
         constexpr double let_pass = 1.1;  // [-] of the Courant number: no step is taken back for a little
         report.rounds = step.round;
         if (settled_) {
@@ -307,7 +308,7 @@ private:
         }
         FlowOptions options = given_.flow->options;
         options.bodies = surface_velocities(step.dt);
-        options.tolerance = of_forces;
+        options.tolerance = free_.empty() ? of_forces : of_motion;
         flow = flow_state(given_, state_.fields);
         solved.density_before = flow.density;
         try {

@@ -97,8 +97,11 @@ void add_flow(const StepReport& report, const Case& given, StepRow& row) {
     row.insert(row.end(), {{"kinetic_energy [J]", flow.energy.kinetic},
                            {"surface_energy [J]", flow.energy.surface},
                            {"gravity_energy [J]", flow.energy.gravity},
-                           {"dissipated [J]", flow.dissipated},
-                           {"mass_error_surroundings [kg]", flow.mass_error}});
+                           {"dissipated [J]", flow.dissipated}});
+    for (int axis = 0; axis < 3; ++axis) row.push_back({fmt::format("momentum_{} [kg m/s]", "xyz"[axis]), flow.momentum[axis]});
+    for (int axis = 0; axis < 3; ++axis)
+        row.push_back({fmt::format("momentum_error_{} [kg m/s]", "xyz"[axis]), flow.momentum_error[axis]});
+    row.push_back({"mass_error_surroundings [kg]", flow.mass_error});
     for (std::size_t body = 0; body < given.domain.bodies.size(); ++body)
         if (given.liquid[body] != 0)
             row.push_back({fmt::format("mass_error_{} [kg]", column_name(given.domain.bodies[body].name)),

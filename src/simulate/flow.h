@@ -151,6 +151,10 @@ struct FlowReport {
     std::vector<SurfaceCourse> surfaces = {};  // of liquid ones
     FlowEnergy energy = {};
     double dissipated = 0;  // [J] in the step, by viscosity
+    Vec3 momentum = {};        // [kg m/s] of all that flows, at the step's end
+    // [kg m/s] gained in the step, and neither by forces nor with what passes faces: as the form is not conservative, of the
+    // order of the cells' and the step's error. Zero in Stokes flow and in a steady one.
+    Vec3 momentum_error = {};
     std::array<double, 6> face_flux = {};  // [m^3/s] out through each face
     // [N] on each face; nothing where it is open. Where faces meet, what acts on vertices is of the face
     // across that direction, else of both: of shear a share of the cells' size goes to faces beside.

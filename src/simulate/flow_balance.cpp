@@ -58,7 +58,7 @@ void let_rest_out(const Ranks& ranks, const Pattern& pattern, const FlowBoundary
     for (const auto& facets : boundary.faces)
         for_each_flux(facets, position, outward, [&](Vertex v, double flux) { passing += density(v) * flux; });
     if (!(passing > 0)) return;
-    for (Vertex v : vertex) velocity[v] -= rest / passing * outward[v];
+    for (Vertex v : velocity.indices()) velocity[v] -= rest / passing * outward[v];
 }
 
 }  // namespace kropla

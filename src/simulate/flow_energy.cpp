@@ -34,6 +34,37 @@ FlowEnergy flow_energy(const Mesh& mesh, const Cells& cells, const Array<Region,
     return energy;
 }
 
+Vec3 momentum(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& position,
+              const Array<Region, FlowMaterial>& material, const Array<Vertex, Vec3>& velocity) {
+    Vec3 sum;
+    for_each_points(mesh, cells, position, material, [&](const auto& vertices, const auto& points, const FlowMaterial& of) {
+        const double density = mean_property(of.density, of.densities, vertices);
+        const auto u = at_corners(velocity, vertices);
+        for (std::size_t k = 0; k < points.size(); ++k) sum += density * points[k].volume * mean_value(k, u);
+    });
+    return sum;
+}
+
+Vec3 inertia(const FlowStage& stage, const Cells& cells) {
+    Vec3 sum;
+    for_each_points(stage.mesh, cells, stage.position, stage.material, [&](const auto& vertices, const auto& points, const FlowMaterial& of) {
+        const double density = mean_property(of.density, of.densities, vertices);
+        const auto u = at_corners(stage.guess.velocity, vertices);
+        auto change = u, past = u;  // since `old`, and the mesh
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            change[i] -= stage.old[vertices[i]];
+            if (!stage.mesh_velocity.empty()) past[i] -= stage.mesh_velocity[vertices[i]];
+            if (!stage.convection) past[i] -= u[i];
+        }
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            sum += density * points[k].volume * stage.per_time * mean_value(k, change);
+            const Vec3 carrying = mean_value(k, past);
+            for (std::size_t i = 0; i < u.size(); ++i) sum += density * dot(carrying, points[k].volume_gradient[i]) * u[i];
+        }
+    });
+    return sum;
+}
+
 double dissipation(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& position,
                    const Array<Region, FlowMaterial>& material, const Array<Vertex, Vec3>& velocity) {
     double sum = 0;

@@ -8,6 +8,13 @@ namespace kropla {
 [[nodiscard]] FlowEnergy flow_energy(const Mesh& mesh, const Cells& cells, const Array<Region, FlowMaterial>& material,
                                      const Array<Vertex, Vec3>& velocity, const Vec3& gravity);
 
+/// The momentum of what flows [kg m/s], with its vertices at `position`.
+[[nodiscard]] Vec3 momentum(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& position,
+                            const Array<Region, FlowMaterial>& material, const Array<Vertex, Vec3>& velocity);
+
+/// What forces do to what flows in a stage [N], by the form that is solved: the integral of rho (du/dt + (u - w).grad u).
+[[nodiscard]] Vec3 inertia(const FlowStage& stage, const Cells& cells);
+
 /// What viscosity turns into heat [W], the integral of mu/2 |grad u + grad u^T|^2.
 [[nodiscard]] double dissipation(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& position,
                                  const Array<Region, FlowMaterial>& material, const Array<Vertex, Vec3>& velocity);

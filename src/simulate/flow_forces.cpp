@@ -45,6 +45,17 @@ Array<Vertex, Vec3> reactions(const Ranks& ranks, const Pattern& pattern, const 
     return reaction;
 }
 
+void take_off_pressure(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position, double pressure,
+                       Array<Vertex, Vec3>& reaction) {
+    const auto take_off = [&](const std::vector<std::array<Vertex, 3>>& facets) {
+        for (const auto& [a, b, c] : facets)
+            for (Vertex v : {a, b, c})
+                reaction[v] += pressure / 6 * cross(position[b] - position[a], position[c] - position[a]);
+    };
+    for (const auto& face : boundary.faces) take_off(face);
+    for (const SolidSurface& solid : boundary.solids) take_off(solid.facets);
+}
+
 std::vector<BodyForce> body_forces(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position,
                                    const Array<Vertex, Vec3>& velocity, const Array<Vertex, Vec3>& reaction) {
     std::vector<BodyForce> bodies;
@@ -61,12 +72,12 @@ std::vector<BodyForce> body_forces(const FlowBoundary& boundary, const Array<Ver
 }
 
 std::array<Vec3, 6> face_forces(const FlowOptions& options, const FlowBoundary& boundary,
-                                const std::vector<Vertex>& vertices, const Array<Vertex, Vec3>& reaction) {
+                                const Array<Vertex, Vec3>& reaction) {
     const Array<Vertex, unsigned> faces = faces_at(boundary, reaction.size());
     std::array<Vec3, 6> forces = {};
     for (int m = 0; m < 3; ++m) {
         const unsigned across = 3u << (2 * m), hold = holding(options, across);
-        for (Vertex v : vertices) {
+        for (Vertex v : reaction.indices()) {
             const unsigned all = faces[v] & hold, those = (all & across) != 0 ? all & across : all;
             for (std::size_t face = 0; face < 6; ++face)
                 if ((those >> face & 1u) != 0) forces[face][m] -= reaction[v][m] / std::popcount(those);

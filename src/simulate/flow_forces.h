@@ -11,15 +11,18 @@ namespace kropla {
 /// rank owns. All ranks call it together, and all get the whole.
 [[nodiscard]] Array<Vertex, Vec3> reactions(const Ranks& ranks, const Pattern& pattern, const std::vector<double>& residual);
 
+/// Takes off what a pressure [Pa] that is the same everywhere adds to them.
+void take_off_pressure(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position, double pressure,
+                       Array<Vertex, Vec3>& reaction);
+
 /// Of solid bodies, with their vertices at `position`.
 [[nodiscard]] std::vector<BodyForce> body_forces(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position,
                                                  const Array<Vertex, Vec3>& velocity,
                                                  const Array<Vertex, Vec3>& reaction);
 
-/// [N] on each face of the box, as FlowReport has it; `vertices` are those of the pattern's rows. Where faces meet, each
-/// direction is of the one across it, else of all alike that hold it.
+/// [N] on each face of the box, as FlowReport has it. Where faces meet, each direction is of the one across it, else of all
+/// alike that hold it.
 [[nodiscard]] std::array<Vec3, 6> face_forces(const FlowOptions& options, const FlowBoundary& boundary,
-                                              const std::vector<Vertex>& vertices,
                                               const Array<Vertex, Vec3>& reaction);
 
 }  // namespace kropla

@@ -93,7 +93,8 @@ public:
         report.iterations = solver_.iterations();
         report.passes = passes_;
         report.error = error_;
-        const Array<Vertex, Vec3> reaction = reactions(ranks_, blocks_.pattern, reaction_);
+        Array<Vertex, Vec3> reaction = reactions(ranks_, blocks_.pattern, reaction_);
+        if (conditions_.closed) take_off_pressure(boundary_, current_.position, mean_pressure(), reaction);
         report.bodies = body_forces(boundary_, current_.position, guess_.velocity, reaction);
         for (const BodyForce& body : report.bodies) report.net_flux += body.flux;
         for (std::size_t face = 0; face < 6; ++face) {
@@ -104,8 +105,9 @@ public:
         report.energy = flow_energy(current_, cells_, material_, guess_.velocity, options_.gravity);
         report.energy.surface = surfaces_.energy();
         report.dissipated = dissipated_;
+        report_momentum(report);
         report_mass(report);
-        report.face_force = face_forces(options_, boundary_, numbering().vertex, reaction);
+        report.face_force = face_forces(options_, boundary_, reaction);
         report.largest_courant = largest_courant();
         return report;
     }
@@ -188,6 +190,24 @@ private:
         report.mass_error = dt_ * report.net_flux * (*flowing)->density(0);
     }
 
+    void report_momentum(FlowReport& report) const {
+        report.momentum = momentum(current_, cells_, current_.position, material_, guess_.velocity);
+        if (steady() || !options_.convection) return;
+        Array<Region, FlowMaterial> begin = material_;
+        for (FlowMaterial& material : begin)
+            if (!material.densities.empty() && !start_.density.empty()) material.densities = start_.density;
+        report.momentum_error = report.momentum - pushed_ - momentum(before_, cells_, before_.position, begin, start_.velocity);
+    }
+    /// What forces bring, less what goes out through faces, in the part of the step that a stage stands for.
+    void note_momentum(const FlowStage& stage, double dt) {
+        pushed_ += dt * inertia(stage, cells_);
+        for (const auto& facets : boundary_.faces)
+            for_each_flux(facets, stage.position, guess_.velocity, [&](Vertex v, double flux) {
+                const double density = gas_ ? gas_->densities()[v] : material_[Region(0)].density;
+                pushed_ -= dt * density * flux * guess_.velocity[v];
+            });
+    }
+
     [[nodiscard]] FlowUnknowns unknowns() const {
         FlowUnknowns unknowns{{}, conditions_.closed};
         for_each_unknown([&](std::size_t, Vertex v, bool further) {
@@ -243,6 +263,7 @@ private:
             let_rest_out(ranks_, blocks_.pattern, boundary_, conditions_, position,
                          gas_ ? gas_->densities() : Array<Vertex, double>(), system_.residual, guess_.velocity);
         if (gas_) gas_->end(at, position, guess_.velocity);
+        if (!steady() && options_.convection) note_momentum(stage, at.weight * dt_);
         dissipated_ += at.weight * dt_ * dissipation(current_, cells_, position, material_, guess_.velocity);
         surfaces_.end(guess_.velocity, at.weight * dt_);
     }
@@ -345,6 +366,7 @@ private:
     FlowSolver solver_;
     bool triangular_ = false;  // the preconditioner
     double dissipated_ = 0;  // [J] in the stages so far
+    Vec3 pushed_;            // [kg m/s] in them
     int passes_ = 0;
     double largest_left_ = 0;  // the first residual of a stage, the larger of both
     double error_ = 0;

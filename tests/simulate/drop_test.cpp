@@ -198,8 +198,10 @@ TEST(Drop, LetsThePressureJump) {
     options.regions.push_back(FlowRegion{.density = 1000, .viscosity = 0.1});
     options.tolerance = 1e-10;
     FlowState state = still_flow(mesh);
-    (void)step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 0.01);
+    const FlowReport report = step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 0.01);
     for (Vertex v : mesh.position.indices()) EXPECT_LE(norm(state.velocity[v]), 1e-9);
+    EXPECT_NEAR(report.face_force[1].x, 0, 1e-6) << "the pressure's mean; where the interface ends, it counts once";
+    EXPECT_NEAR(report.face_force[4].z, -1253.75, 1e-5);
     const auto at = [&](double z, const Array<Vertex, double>& pressure) {
         for (Vertex v : mesh.position.indices())
             if (distance(mesh.position[v], {0.5, 0.5, z}) < 1e-9) return pressure[v];

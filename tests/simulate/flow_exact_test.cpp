@@ -54,6 +54,19 @@ TEST(FlowExact, AUniformFlowIsKeptOnAnyMovingMesh) {
     }
 }
 
+TEST(FlowExact, MomentumOfAUniformFlowIsBalancedOnAMovingMesh) {
+    const Vec3 wind{3, -1, 2};
+    const Mesh start = cube_with_layers(8, true);
+    FlowOptions options = fluid(1.6, 2e-3, uniform(wind));
+    options.regions.push_back(FlowRegion{.density = 1.6, .viscosity = 2e-3});
+    options.tolerance = 1e-12;
+    FlowState state = still_flow(start);
+    set_velocity(state, wind);
+    const FlowReport report = step_flow(petsc().all_ranks(), place_at_step(start, 0), place_at_step(start, 1), options, state, 0, 0.01);
+    EXPECT_LT(norm(report.momentum - 1.6 * wind), 1e-12);
+    EXPECT_LT(norm(report.momentum_error), 2e-14);
+}
+
 // Against it: what is left of a wind that is not there at the start, by the same steps.
 TEST(FlowExact, AUniformFlowIsFoundFromRest) {
     const Vec3 wind{3, -1, 2};
