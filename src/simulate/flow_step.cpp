@@ -24,7 +24,8 @@ namespace {
 
 constexpr double gamma = 1 - 1 / std::numbers::sqrt2;
 constexpr double margin = 0.3;       // [-] of what is wanted of the residual: systems are solved so well, and
-constexpr double forcing = 1e-2;     // [-] of the residual, at the best: a derivative that is kept brings no more
+constexpr double forcing = 1e-2;     // [-] of the residual, at the best: a derivative that is kept brings no more;
+constexpr double long_forcing = 1e-4;    // [-] of that in steps of first order, which may be long
 constexpr double stagnation = 0.5;   // [-] of the residual: a pass that leaves more got nowhere, and
 constexpr double rounding = 1e-12;   // [-] of the terms of the residual is where that is no failure
 
@@ -243,10 +244,11 @@ private:
         double left = solver_.size(system_.residual);
         largest_left_ = std::max(largest_left_, left);
         const double wanted = options_.tolerance * largest_left_;
+        const double least = options_.scheme == FlowScheme::first_order ? long_forcing : forcing;
         const bool is_solution = left <= rounding * solver_.size_of_terms(unknown());  // as it is
         for (int pass = 1; left > wanted && !is_solution; ++pass) {
             if (pass > options_.most_passes || !std::isfinite(left)) give_up(pass, left / largest_left_);
-            add(correction(stage, std::max(margin * wanted / left, forcing)));
+            add(correction(stage, std::max(margin * wanted / left, least)));
             ++passes_;
             assemble(stage, false);
             const double before = left;
