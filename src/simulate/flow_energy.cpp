@@ -54,7 +54,6 @@ Vec3 inertia(const FlowStage& stage, const Cells& cells) {
         for (std::size_t i = 0; i < u.size(); ++i) {
             change[i] -= stage.old[vertices[i]];
             if (!stage.mesh_velocity.empty()) past[i] -= stage.mesh_velocity[vertices[i]];
-            if (!stage.convection) past[i] -= u[i];
         }
         for (std::size_t k = 0; k < points.size(); ++k) {
             sum += density * points[k].volume * stage.per_time * mean_value(k, change);

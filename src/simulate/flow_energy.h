@@ -13,6 +13,7 @@ namespace kropla {
                             const Array<Region, FlowMaterial>& material, const Array<Vertex, Vec3>& velocity);
 
 /// What forces do to what flows in a stage [N], by the form that is solved: the integral of rho (du/dt + (u - w).grad u).
+/// Of a flow with convection.
 [[nodiscard]] Vec3 inertia(const FlowStage& stage, const Cells& cells);
 
 /// What viscosity turns into heat [W], the integral of mu/2 |grad u + grad u^T|^2.
