@@ -9,6 +9,7 @@
 #include "adapt/constants.h"
 #include "adapt/propose.h"
 #include "adapt/star.h"
+#include "adapt/zone.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
@@ -363,11 +364,14 @@ void carry_out(Mesh& mesh, const Cavity& cavity, Changes& changes) {
 }
 
 Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options) {
+    return swap_for_energy(mesh, cells, options, is_tangled(mesh, cells));
+}
+
+Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options, bool tangled) {
     const double limit = passable_after_swap * options.good_enough;
     Changes changes;
     std::vector<Tet> tried;
     std::ranges::copy_if(cells, std::back_inserter(tried), [&](Tet t) { return alive(mesh, t); });
-    const bool tangled = is_tangled(mesh, tried);
     for (int round = 0; round < most_swap_rounds && !tried.empty(); ++round) {
         const auto proposals =
             propose_all(tried.size(), [&](std::size_t i) { return swap_longest_edge(mesh, tried[i], limit); },

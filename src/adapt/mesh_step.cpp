@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -44,13 +45,14 @@ std::vector<Tet> cells_at_inner_shells(const Mesh& mesh, const Domain& domain) {
 
 /// Of the cells that are new, and of those with a vertex that was moved.
 double worst_aspect_ratio_of(const Mesh& mesh, const Changes& changes) {
-    double worst = 0;
-    const auto look_at = [&](Tet t) { worst = std::max(worst, aspect_ratio(mesh, t)); };
-    for (Tet t : changes.cells)
-        if (alive(mesh, t)) look_at(t);
-    for (Vertex v : changes.vertices)
-        if (alive(mesh, v)) std::ranges::for_each(ball(mesh, v), look_at);
-    return worst;
+    std::vector<Tet> cells, around;
+    std::ranges::copy_if(changes.cells, std::back_inserter(cells), [&](Tet t) { return alive(mesh, t); });
+    for (Vertex v : changes.vertices) {
+        if (!alive(mesh, v)) continue;
+        ball(mesh, v, around);
+        cells.insert(cells.end(), around.begin(), around.end());
+    }
+    return worst_aspect_ratio(mesh, cells);
 }
 
 /// Within so many target sizes of one of the places.
@@ -205,6 +207,7 @@ void MeshStep::optimise() {
     if (stuck_) return;
     if (optimise_placed()) way_ = check_way(motion_, current_, before_.position, least_volume_kept);
     if (!way_.arrived) move_in_legs();
+    if (!stuck_) stuck_ = limit_of_motion();
 }
 
 /// Goes as far as all cells stay valid, optimises the places there, and so on.
@@ -254,14 +257,14 @@ bool MeshStep::optimise_placed() {
 }
 
 std::optional<Refusal> MeshStep::refusal() const {
-    auto refusal = what_limits();
+    auto refusal = stuck_ ? stuck_ : worst_cell();
     if (refusal && statistics_.refined.given_up > 0)
         refusal->why += "; the effort allowed for remeshing there was spent";
     return refusal;
 }
 
-std::optional<Refusal> MeshStep::what_limits() const {
-    if (stuck_) return stuck_;
+/// Remeshing changes nothing of it but the worst cell.
+std::optional<Refusal> MeshStep::limit_of_motion() const {
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;
@@ -372,7 +375,7 @@ Changes MeshStep::remesh_by_paper() {
 Changes MeshStep::remesh_by_size(const AdaptOptions& options) {
     const Snapshot at_time = snapshot_at(target_time_);
     Changes changes = adapt_to_size(current_, zone_, motion_, at_time, options);
-    changes += swap_for_energy(current_, cells_above(options.swap_above), options);
+    changes += swap_for_energy(current_, cells_above(options.swap_above), options, false);
     std::vector<Tet> poor = cells_above(options.good_enough);
     adapted_ = surfaces_to_adapt(at_time);
     adapt_surfaces(at_time, options, changes);

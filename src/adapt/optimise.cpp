@@ -12,6 +12,7 @@
 #include "adapt/zone.h"
 
 #include "base/tetrahedron.h"
+#include "mesh/four_cells.h"
 
 #include <algorithm>
 #include <atomic>

@@ -6,6 +6,7 @@
 #include "adapt/propose.h"
 #include "adapt/zone.h"
 #include "base/tetrahedron.h"
+#include "mesh/four_cells.h"
 #include <kropla/mesh/cells.h>
 #include <kropla/mesh/quality.h>
 

@@ -5,6 +5,7 @@
 #include "adapt/way.h"
 
 #include "base/for_all.h"
+#include "mesh/four_cells.h"
 #include <kropla/mesh/prisms.h>
 
 #include <algorithm>
@@ -57,21 +58,28 @@ double safe_fraction(const Mesh& mesh, Tet t, const Array<Vertex, Vec3>& start, 
     return positive_share(e, de, least);
 }
 
-/// Does the corner of a prism keep its Jacobian without doubt? As surely_keep_volume for a tet, but told by the product of
-/// the lengths of the rows, which differ.
-bool is_surely_safe(const std::array<Vec3, 3>& e, const std::array<Vec3, 3>& de, double least) {
-    double longest = 1, lengths = 1;
-    for (std::size_t i = 0; i < 3; ++i) {
-        lengths *= norm(e[i]);
-        longest *= norm(e[i]) + norm(de[i]);
-    }
-    return (1 - least) * determinant(e[0], e[1], e[2]) > longest - lengths;
+/// The edges of a prism: around its base and around its top, each opposite to the corner of its number, and its legs.
+constexpr std::array<std::array<std::size_t, 2>, 9> edges_of_prism = {
+    {{1, 2}, {2, 0}, {0, 1}, {4, 5}, {5, 3}, {3, 4}, {0, 3}, {1, 4}, {2, 5}}};
+using PrismEdges = std::array<Vec3, 9>;
+using PrismLengths = std::array<double, 9>;
+
+PrismEdges edges_of(const std::array<Vec3, 6>& x) {
+    PrismEdges edges;
+    for (std::size_t i = 0; i < edges.size(); ++i) edges[i] = x[edges_of_prism[i][1]] - x[edges_of_prism[i][0]];
+    return edges;
 }
 
-/// The edges at corner i of a prism, by which its Jacobian is told there.
-std::array<Vec3, 3> edges_at(const std::array<Vec3, 6>& x, std::size_t i) {
-    const std::size_t base = i < 3 ? 0 : 3, k = i % 3;
-    return {x[base + (k + 1) % 3] - x[i], x[base + (k + 2) % 3] - x[i], x[k + 3] - x[k]};
+PrismLengths lengths_of(const PrismEdges& edges) {
+    PrismLengths lengths;
+    std::ranges::transform(edges, lengths.begin(), [](const Vec3& edge) { return norm(edge); });
+    return lengths;
+}
+
+/// Those at a corner, in the order in which their determinant is the Jacobian there.
+std::array<std::size_t, 3> edges_at(std::size_t corner) {
+    const std::size_t first = corner < 3 ? 0 : 3, k = corner % 3;
+    return {first + (k + 1) % 3, first + (k + 2) % 3, 6 + k};
 }
 
 }  // namespace
@@ -99,12 +107,19 @@ double safe_fraction(const Mesh& mesh, std::span<const Tet> cells, const Array<V
 }
 
 double safe_fraction(const std::array<Vec3, 6>& from, const std::array<Vec3, 6>& to, double least) {
+    const PrismEdges start = edges_of(from);
+    PrismEdges change = edges_of(to);
+    for (std::size_t i = 0; i < change.size(); ++i) change[i] -= start[i];
+    const PrismLengths length = lengths_of(start), changed = lengths_of(change);
     double fraction = 1;
-    for (std::size_t i = 0; i < 6; ++i) {
-        const auto e = edges_at(from, i);
-        auto de = edges_at(to, i);
-        for (std::size_t k = 0; k < 3; ++k) de[k] -= e[k];
-        if (!is_surely_safe(e, de, least)) fraction = std::min(fraction, positive_share(e, de, least));
+    for (std::size_t corner = 0; corner < 6; ++corner) {
+        const auto [i, j, k] = edges_at(corner);
+        const std::array<Vec3, 3> e = {start[i], start[j], start[k]};
+        // As surely_keep_volume for a tet, but told by the product of the lengths of the rows, which differ.
+        const double longest = (length[i] + changed[i]) * (length[j] + changed[j]) * (length[k] + changed[k]);
+        const double may_change = longest - length[i] * length[j] * length[k];
+        if ((1 - least) * determinant(e[0], e[1], e[2]) > may_change) continue;
+        fraction = std::min(fraction, positive_share(e, {change[i], change[j], change[k]}, least));
     }
     return fraction;
 }

@@ -179,16 +179,6 @@ double aspect_ratio(const ZoneMotion& motion, const Mesh& mesh, Tet t) {
     return tet_aspect_ratio(motion.place[v[0]], motion.place[v[1]], motion.place[v[2]], motion.place[v[3]]);
 }
 
-FourPlaces four_cells(std::span<const Tet> cells, const Mesh& mesh, std::size_t first,
-                      const Array<Vertex, Vec3>& places) {
-    FourPlaces tets;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const auto& v = mesh.tets[cells[std::min(first + i, cells.size() - 1)]];
-        for (std::size_t k = 0; k < 4; ++k) tets[i][k] = &places[v[k]];
-    }
-    return tets;
-}
-
 Freedom freedom(const Zone& zone, const ZoneMotion& motion, Vertex v) {
     const unsigned axes = motion.moves[v] == ZoneMotion::by_itself ? zone.axes[v] : 0u;
     return {{(axes & 1) != 0, (axes & 2) != 0, (axes & 4) != 0}};

@@ -124,6 +124,7 @@ void measure_ball(const Zone& zone, ZoneMotion& motion, const Mesh& mesh, Vertex
 /// As for cells: see adapt.h. The motion's places are those of the mesh. `tangled`: cells may be turned over.
 Changes adapt_to_size(Mesh& mesh, const Zone& zone, const ZoneMotion& motion, const Snapshot& at_time,
                       const AdaptOptions& options, bool tangled = false);
+Changes swap_for_energy(Mesh& mesh, std::span<const Tet> cells, const AdaptOptions& options, bool tangled);
 void write_places(const ZoneMotion& motion, Mesh& mesh);
 
 // For place_boundary and movable.
@@ -133,9 +134,5 @@ void fit(ZoneMotion& motion, const Mesh& mesh);
 void list_cells(const Zone& zone, ZoneMotion& motion, const Mesh& mesh);
 /// Asks for the target sizes where the vertices are to go.
 void find_sizes(ZoneMotion& motion, const Snapshot& at_time);
-
-/// The corners of four cells from the `first` on, at `places`; past the last cell, that one again.
-[[nodiscard]] FourPlaces four_cells(std::span<const Tet> cells, const Mesh& mesh, std::size_t first,
-                                    const Array<Vertex, Vec3>& places);
 
 }  // namespace kropla

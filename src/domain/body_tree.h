@@ -7,9 +7,11 @@ namespace kropla {
 
 /// Where the bodies of a snapshot are, so that a question at a place asks only those that may have the answer.
 struct BodyTree {
-    BoxTree boxes;         // a little wider than what holds each body, so that rounding cannot hide one
-    double least_size;     // [m] of all surface sizes
-    double most_thickness; // [m] of all layers
+    BoxTree boxes;               // a little wider than what holds each body, so that rounding cannot hide one
+    double least_size;           // [m] of all surface sizes
+    double most_thickness;       // [m] of all layers
+    std::vector<double> outward; // [m] per body: its outward_shift
+    double most_outward;         // [m] of all bodies
 };
 
 /// Makes the tree of the snapshot's shapes, which are not to change any more; none for a few.

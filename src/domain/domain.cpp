@@ -33,17 +33,21 @@ std::shared_ptr<const BodyTree> tree_of(const Snapshot& at) {
     constexpr double widened = 1e-9;  // [-] of the box's coordinates and the body's
     if (at.shapes.size() <= few_bodies) return {};
     std::vector<Extent> boxes;
+    std::vector<double> outward;
     double least_size = std::numeric_limits<double>::infinity(), most_thickness = 0;
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
         const Bounds held = bounds(at.shapes[body]);
         const double most = std::max({norm(held.min), norm(held.max), norm(at.box.min), norm(at.box.max)});
         const Vec3 margin = widened * most * Vec3{1, 1, 1};
         boxes.push_back({held.min - margin, held.max + margin});
+        outward.push_back(outward_shift(at.shapes[body], asked_size(at, body)));
         const double of_body = surface_size(at, body);
         least_size = std::min(least_size, has_local_size(at, body) ? std::min(of_body, kropla::least_size(at.size)) : of_body);
         if (at.layers[body]) most_thickness = std::max(most_thickness, thickness(*at.layers[body]));
     }
-    return std::make_shared<const BodyTree>(BodyTree{BoxTree(std::move(boxes)), least_size, most_thickness});
+    const double most_outward = *std::ranges::max_element(outward);
+    return std::make_shared<const BodyTree>(
+        BodyTree{BoxTree(std::move(boxes)), least_size, most_thickness, std::move(outward), most_outward});
 }
 
 }  // namespace

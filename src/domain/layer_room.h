@@ -2,6 +2,8 @@
 
 #include <kropla/domain/domain.h>
 
+#include <limits>
+
 namespace kropla {
 
 // How much of the gap to what is near a layer may take, so that a row of tets stands between: of that to a
@@ -22,7 +24,9 @@ struct Gap {
     int wall;          // the obstacle: a face of the box, 0 ... 5, or the fixed walls; -1: a body
     std::size_t body;  // that body, where it is one
 };
-[[nodiscard]] Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x);
+/// Of what leaves less room than `beyond` [m], if anything does; else the distance is infinite.
+[[nodiscard]] Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x,
+                              double beyond = std::numeric_limits<double>::infinity());
 
 /// The thickness [m] of the layer at the point `x` of the body's surface: as asked where there is room,
 /// exactly, else the room there, 0 at least. A function of the place alone; where it is less than asked it

@@ -1,6 +1,7 @@
 #include <kropla/mesh/quality.h>
 
 #include "base/tetrahedron.h"
+#include "mesh/four_cells.h"
 #include <kropla/mesh/prisms.h>
 
 #include <algorithm>
@@ -34,7 +35,8 @@ Vec3 centroid(const Mesh& mesh, Tet t) {
 
 double worst_aspect_ratio(const Mesh& mesh, std::span<const Tet> tets) {
     double worst = 0;
-    for (Tet t : tets) worst = std::max(worst, aspect_ratio(mesh, t));
+    for (std::size_t first = 0; first < tets.size(); first += 4)
+        worst = std::max(worst, std::ranges::max(tet_aspect_ratios(four_cells(tets, mesh, first, mesh.position))));
     return worst;
 }
 

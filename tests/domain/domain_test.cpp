@@ -1,5 +1,6 @@
 #include <kropla/base/error.h>
 #include <kropla/domain/domain.h>
+#include "domain/layer_room.h"
 #include "domain/shapes.h"
 
 #include <gtest/gtest.h>
@@ -102,6 +103,35 @@ TEST(SizeField, OfManyBodiesIsTheSameByTheirTreeWhereSizesAreLocal) {
         const Vec3 x{i % 10 + 0.5, i / 10 % 10 + 0.3, i / 100 + 0.1};
         ASSERT_EQ(target_size(at, x), target_size(without, x)) << i;
     }
+}
+
+TEST(LayerRoom, OfManyBodiesIsTheSameByTheirTreeAndBelowABound) {
+    Domain domain{{{0, 0, 0}, {10, 10, 10}}, {}, {.surface = 0.3, .growth = 0.2, .far = 0.8}};
+    for (int i = 0; i < 27; ++i) {
+        const Vec3 centre{1.5 + 3 * (i % 3), 1.5 + 3 * (i / 3 % 3), 1.5 + i / 9 * 3};
+        domain.bodies.push_back(body("ball " + std::to_string(i), ball(centre, 0.5 + 0.03 * i)));
+        if (i % 2 == 0) domain.bodies.back().layer = LayerOptions{.count = 2, .first_height = 0.02};
+    }
+    const Snapshot at = snapshot(domain, 0);
+    ASSERT_TRUE(at.tree);
+    Snapshot without = at;
+    without.tree = {};
+    int beside_walls = 0, beside_bodies = 0;
+    for (int i = 0; i < 27 * 20; ++i) {
+        const std::size_t of = static_cast<std::size_t>(i / 20);
+        const double turn = 0.3 * i;
+        const Vec3 x = at.shapes[of].centre + at.shapes[of].semi_axes.x * Vec3{std::cos(turn), std::sin(turn) * 0.6, std::sin(turn) * 0.8};
+        const Gap gap = nearest_gap(at, of, x), expected = nearest_gap(without, of, x);
+        ASSERT_EQ(gap.room, expected.room) << i;
+        ASSERT_EQ(gap.distance, expected.distance) << i;
+        ASSERT_EQ(gap.wall, expected.wall) << i;
+        ASSERT_EQ(gap.body, expected.body) << i;
+        ++(gap.wall < 0 ? beside_bodies : beside_walls);
+        ASSERT_EQ(nearest_gap(at, of, x, gap.room + 0.1).distance, gap.distance);
+        ASSERT_EQ(nearest_gap(at, of, x, gap.room).distance, std::numeric_limits<double>::infinity());
+    }
+    EXPECT_GT(beside_walls, 50);
+    EXPECT_GT(beside_bodies, 50);
 }
 
 TEST(Snapshot, TakesBodiesAlongTheirMotion) {
