@@ -207,7 +207,7 @@ void MeshStep::optimise() {
     if (stuck_) return;
     if (optimise_placed()) way_ = check_way(motion_, current_, before_.position, least_volume_kept);
     if (!way_.arrived) move_in_legs();
-    if (!stuck_) stuck_ = limit_of_motion();
+    if (!stuck_) stuck_ = what_limits();
 }
 
 /// Goes as far as all cells stay valid, optimises the places there, and so on.
@@ -257,14 +257,13 @@ bool MeshStep::optimise_placed() {
 }
 
 std::optional<Refusal> MeshStep::refusal() const {
-    auto refusal = stuck_ ? stuck_ : worst_cell();
+    auto refusal = stuck_;
     if (refusal && statistics_.refined.given_up > 0)
         refusal->why += "; the effort allowed for remeshing there was spent";
     return refusal;
 }
 
-/// Remeshing changes nothing of it but the worst cell.
-std::optional<Refusal> MeshStep::limit_of_motion() const {
+std::optional<Refusal> MeshStep::what_limits() const {
     if (auto gap = narrow_gap()) return gap;
     if (auto cell = worst_cell()) return cell;
     if (auto prism = squeezed_prism()) return prism;

@@ -74,7 +74,7 @@ private:
     void find_uneven();
     /// With the bodies where the current mesh has them.
     [[nodiscard]] Snapshot snapshot_at(double t) const;
-    [[nodiscard]] std::optional<Refusal> limit_of_motion() const;
+    [[nodiscard]] std::optional<Refusal> what_limits() const;
     [[nodiscard]] Refusal refused(Tet cell, const std::string& fault, double advised_dt) const;
     [[nodiscard]] std::optional<Refusal> narrow_gap() const;
     [[nodiscard]] std::optional<Refusal> worst_cell() const;
@@ -115,7 +115,7 @@ private:
     IndexSet<Tet> replaced_;         // in which slots the three meshes may differ,
     std::vector<Vertex> moved_;      // and which vertices may have other places
     std::vector<Vec3> trouble_;      // where the attempts refused since the last accepted step got stuck
-    std::optional<Refusal> stuck_;   // the motion did not arrive, or is not allowed
+    std::optional<Refusal> stuck_;   // the motion did not arrive, or not as it should
     bool under_way_ = false;         // an attempt
     bool dropped_ = false;           // the other two meshes may differ from the reference anywhere
     StepStatistics statistics_;
