@@ -15,7 +15,6 @@ namespace {
 // The drawing [pixels]: as wide as a column of the page; room for numbers at the left and below.
 constexpr double width = 420, height = 200, left = 60, right = 410, top = 8, bottom = 166;
 constexpr std::size_t most_rows = 400;  // more would be narrower than a pixel
-constexpr double flat_share = 1e-6;     // of the value: a change that numbers at the axis do not show
 
 /// Where values are on the drawing.
 struct Axes {
@@ -76,7 +75,7 @@ Range range_of_values(const Chart& chart) {
 Axes axes_of(const Chart& chart) {
     Range y = range_of_values(chart);
     if (!(y.least <= y.most)) y = {0, 1};  // no value is finite
-    const bool flat = y.most - y.least <= flat_share * std::max(std::abs(y.most), std::abs(y.least));
+    const bool flat = is_flat(y.least, y.most);
     const double flat_margin = y.most == 0 ? 1 : 0.05 * std::abs(y.most);
     const double margin = flat ? flat_margin : 0.06 * (y.most - y.least);
     const double foot = chart.marks == Chart::Marks::columns && y.least == 0 ? 0 : margin;
@@ -95,14 +94,6 @@ std::string text_at(Point2 at, const char* anchor, const std::string& text, cons
 std::string level_line(double y, const char* kind) {
     return std::string("<path class=\"") + kind + "\" d=\"M" + pixels(left) + ',' + pixels(y) + 'H' +
            pixels(right) + "\"/>";
-}
-
-/// As many as tell the numbers apart.
-int digits_for(const std::vector<double>& ticks) {
-    constexpr int least = 5, most = 8;
-    if (ticks.size() < 2) return least;
-    const double largest = std::max(std::abs(ticks.front()), std::abs(ticks.back()));
-    return std::clamp(1 + static_cast<int>(std::ceil(std::log10(largest / (ticks[1] - ticks[0])))), least, most);
 }
 
 std::string draw_axes(const Chart& chart, const Axes& axes) {

@@ -33,14 +33,14 @@ std::string field_rows(const std::vector<CutFrame>& frames, const Watch* watch) 
             }
         }
     }
-    if (!(least < most)) most = least + std::max(1e-6 * std::abs(least), 1e-12);
+    const ColourScale colours = scale_over(least, most);
     const auto draw = [&](const CutFrame& f, const CutWindow& window) {
         heed(watch);
-        return draw_field(f.cut, field_named(f, name)->values, {least, most}, window);
+        return draw_field(f.cut, field_named(f, name)->values, colours, window);
     };
     const std::string title = escaped(name + (unit.empty() ? "" : " [" + unit + "]"));
     const std::string heading = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0]))) + title.substr(1);
-    return row(heading + ", cut", frames, whole, draw) + draw_colour_bar(title, {least, most});
+    return row(heading + ", cut", frames, whole, draw) + draw_colour_bar(title, colours);
 }
 
 /// Does a body of the run deform? By the plain form in which a run writes its case.

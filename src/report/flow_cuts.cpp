@@ -67,7 +67,6 @@ std::string scale(Shown& all, const char* si) {
         for (double& value : values) value *= unit.scale;
     all.least *= unit.scale;
     all.most *= unit.scale;
-    if (!(all.least < all.most)) all.most = all.least + std::max(1e-6 * std::abs(all.least), 1e-12);
     return unit.name;
 }
 
@@ -78,7 +77,7 @@ std::string speed_rows(std::span<const CutFrame> frames, const std::vector<Parte
     speed.least = 0;
     const double most = speed.most;
     const std::string title = "speed [" + scale(speed, "m/s") + "]";
-    const ColourScale colours = {speed.least, speed.most, light_blues};
+    const ColourScale colours = scale_over(speed.least, speed.most, light_blues);
     const auto draw = [&](const CutFrame& f, const CutWindow& window) {
         heed(watch);
         const auto i = static_cast<std::size_t>(&f - frames.data());

@@ -149,11 +149,20 @@ void add_arrow(const Drawing& drawing, const Arrow& arrow, std::string& shafts, 
 
 }  // namespace
 
+ColourScale scale_over(double least, double most, std::function<std::string(double)> colour) {
+    if (!is_flat(least, most)) return {least, most, std::move(colour)};
+    if (most == 0) return {0, 1, std::move(colour)};
+    const double around = 0.05 * std::abs(most);
+    return {least - around, most + around, std::move(colour)};
+}
+
 ColourScale signed_scale(double least, double most) {
-    const double size = std::max(std::abs(least), std::abs(most));
-    return {least, most, [=](double fraction) {
-                return blue_to_red(0.5 + 0.5 * (least + fraction * (most - least)) / size);
-            }};
+    ColourScale scale = scale_over(least, most);
+    const double size = std::max(std::abs(scale.least), std::abs(scale.most));
+    scale.colour = [from = scale.least, to = scale.most, size](double fraction) {
+        return blue_to_red(0.5 + 0.5 * (from + fraction * (to - from)) / size);
+    };
+    return scale;
 }
 
 CutWindow extent(std::span<const CutPolygon> cut) {
@@ -234,10 +243,11 @@ std::string draw_colour_bar(const std::string& title, const ColourScale& scale) 
                "\" y=\"20\" width=\"" + pixels(step + 0.5) + "\" height=\"16\"/>";
     }
     svg += "<text class=\"tick\" x=\"" + pixels(left) + "\" y=\"14\">" + escaped(title) + "</text>";
-    for (const double value : round_ticks(scale.least, scale.most, 6)) {
+    const std::vector<double> ticks = round_ticks(scale.least, scale.most, 6);
+    for (const double value : ticks) {
         const double x = left + (right - left) * (value - scale.least) / (scale.most - scale.least);
         svg += "<text class=\"tick\" text-anchor=\"middle\" x=\"" + pixels(x) + "\" y=\"52\">" +
-               readable(value, 5) + "</text>";
+               readable(value, digits_for(ticks)) + "</text>";
     }
     return svg + "</svg>";
 }

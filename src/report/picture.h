@@ -36,7 +36,9 @@ struct ColourScale {
     std::function<std::string(double fraction)> colour = inferno;
 };
 
-/// White where values are zero, blue below and red above, as strong to both sides.
+/// Over the range; or, if values are the same to the digits at a scale, around them, so that they have one colour.
+[[nodiscard]] ColourScale scale_over(double least, double most, std::function<std::string(double)> colour = inferno);
+/// Likewise; white where values are zero, blue below and red above, as strong to both sides.
 [[nodiscard]] ColourScale signed_scale(double least, double most);
 
 /// A field on a cut as inline SVG, in bands of one colour each: exact level lines.

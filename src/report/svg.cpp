@@ -95,8 +95,20 @@ std::vector<double> round_ticks(double least, double most, int count) {
     }
     std::vector<double> ticks;
     const double first = std::ceil(least / step - 1e-9), last = std::floor(most / step + 1e-9);
-    for (double k = first; k <= last; ++k) ticks.push_back(k * step + 0.0);  // + 0: no minus zero
+    for (int i = 0; i < count && first + i <= last; ++i) ticks.push_back((first + i) * step + 0.0);  // + 0: no minus zero
     return ticks;
+}
+
+int digits_for(std::span<const double> ticks) {
+    constexpr int least = 5, most = 8;
+    if (ticks.size() < 2) return least;
+    const double largest = std::max(std::abs(ticks.front()), std::abs(ticks.back()));
+    return std::clamp(1 + static_cast<int>(std::ceil(std::log10(largest / (ticks[1] - ticks[0])))), least, most);
+}
+
+bool is_flat(double least, double most) {
+    constexpr double share = 1e-6;
+    return most - least <= share * std::max(std::abs(most), std::abs(least));
 }
 
 std::string inferno(double fraction) {

@@ -26,6 +26,11 @@ namespace kropla {
 /// Round numbers (1, 2, 5 times powers of ten apart) that cover least ... most, at most `count` of them.
 [[nodiscard]] std::vector<double> round_ticks(double least, double most, int count);
 
+/// As many digits as tell ticks apart, from five to eight.
+[[nodiscard]] int digits_for(std::span<const double> ticks);
+/// Are the ends of the range the same to the digits at its ticks?
+[[nodiscard]] bool is_flat(double least, double most);
+
 /// A colour of the map "inferno", black over red to light yellow and even to the eye, at 0 ... 1: "#cf4446".
 /// By van der Walt and Smith for matplotlib (CC0), linear between ten of its colours.
 [[nodiscard]] std::string inferno(double fraction);

@@ -56,6 +56,23 @@ TEST(Picture, DividesAFieldIntoBandsWithoutGaps) {
     EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), band), {}), 32);
 }
 
+TEST(Picture, ShowsAnEvenFieldInOneColour) {
+    const CutRow row;
+    Array<Vertex, double> even(row.mesh.position.size(), 1000.0);
+    even[Vertex(0)] = std::nextafter(1000.0, 2000.0);  // but for rounding
+    const ColourScale scale = scale_over(1000, even[Vertex(0)]);
+    const std::string svg = draw_field(row.cut, even, scale, extent(row.cut));
+    const std::regex fill("<path fill");
+    EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), fill), {}), 1) << svg;
+    EXPECT_NE(draw_colour_bar("T [K]", scale).find(">1000<"), std::string::npos);
+    for (const ColourScale& still : {scale_over(0, 0), signed_scale(0, 0)}) {
+        EXPECT_EQ(still.least, 0);
+        EXPECT_EQ(still.most, 1);
+    }
+    EXPECT_EQ(signed_scale(-2, 1).least, -2);
+    EXPECT_EQ(signed_scale(-2, 1).most, 1);
+}
+
 TEST(Picture, LeavesOutWhatIsOutsideTheWindow) {
     const CutRow row;
     const std::string svg = draw_cells(row.cut, {{1.1, 0.1}, {1.9, 0.9}});

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
 namespace kropla {
 namespace {
@@ -46,6 +48,23 @@ TEST(Svg, PutsTicksAtRoundNumbers) {
             EXPECT_LE(ticks.size(), 5U) << most * scale;
         }
     }
+}
+
+TEST(Svg, EndsWithTicksThatNoNumberTellsApart) {
+    const double next = std::nextafter(1000.0, 2000.0);
+    EXPECT_LE(round_ticks(1000, next, 6).size(), 6U);
+    EXPECT_LE(round_ticks(-next, -1000, 6).size(), 6U);
+    EXPECT_LE(round_ticks(1000, 1000, 6).size(), 6U);
+    EXPECT_LE(round_ticks(1e9, 1e9 + 1e-3, 6).size(), 6U);
+}
+
+TEST(Svg, TellsTicksApart) {
+    EXPECT_EQ(digits_for(std::vector{0.0, 1.0, 2.0}), 5);
+    EXPECT_EQ(digits_for(std::vector{1000.0, 1000.005, 1000.01}), 7);
+    EXPECT_FALSE(is_flat(1000, 1000.01));
+    EXPECT_TRUE(is_flat(1000, 1000.0001));
+    EXPECT_TRUE(is_flat(0, 0));
+    EXPECT_FALSE(is_flat(-1e-20, 1e-20));
 }
 
 TEST(Svg, ColoursFromBlackToLightYellow) {

@@ -131,7 +131,6 @@ std::pair<ColourScale, std::string> show(const std::vector<FlowFrame>& frames, c
     for (const auto& array : arrays)
         for (vtkIdType p = 0; p < array->GetNumberOfTuples(); ++p)
             array->SetValue(p, array->GetValue(p) * unit.scale);
-    if (!(least < most)) most = least + std::max(1e-6 * std::abs(least), 1e-12);
     return {{least * unit.scale, most * unit.scale}, unit.name};
 }
 
@@ -181,7 +180,7 @@ void draw_flow(const std::filesystem::path& run, const std::filesystem::path& ve
         most = std::max(most, speed);
         return speed;
     });
-    speeds = {0, speeds.most, light_blues};
+    speeds = scale_over(0, speeds.most, light_blues);
     draw(frames, velocity_file, speeds, {"speed", "[" + speed_unit + "]"}, most);
 
     const std::filesystem::path case_file = run / "case.toml";

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <fmt/format.h>
 
 namespace kropla::pictures {
 namespace {
@@ -45,11 +44,11 @@ void add_colour_bar(Sheet& sheet, const Place& place, vtkScalarsToColors* colour
     }
     add_bands(sheet, place, bands);
     add_outline(sheet, place, border_colour, 1);
-    const double step = round_number((most - least) / 4);
-    for (double value = std::ceil(least / step) * step; value <= most * (1 + 1e-9); value += step) {
+    const std::vector<double> ticks = round_ticks(least, most, 5);
+    for (const double value : ticks) {
         const double y = place.top + place.height * (most - value) / (most - least);
         add_filled(sheet, {place.left + place.width, y - 0.75, 7, 1.5}, border_colour);
-        add_text(sheet, place.left + place.width + 12, y, fmt::format("{:.4g}", value),
+        add_text(sheet, place.left + place.width + 12, y, readable(value, digits_for(ticks)),
                  {.size = 18, .align = 0});
     }
 }

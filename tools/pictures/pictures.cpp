@@ -119,13 +119,14 @@ void draw_temperature(const std::vector<RunFrame>& frames, const std::filesystem
         least = std::min(least, range[0]);
         most = std::max(most, range[1]);
     }
-    const auto colours = heat_colours(least, most);
+    const ColourScale scale = scale_over(least, most);
+    const auto colours = heat_colours(scale.least, scale.most);
     Sheet sheet = boxes_side_by_side(frames, 130, [&](Sheet& s, const View& view, const RunFrame& frame) {
         add_view(s, view, {coloured_by_field(section(frame.grid, frame.centre.y), "temperature", colours)});
     });
     const double height = sheet.height - 70;
     add_text(sheet, 1500, 30, "T [K]", {.size = 22, .bold = true});
-    add_colour_bar(sheet, {1482, 60, 30, height - 50}, colours, least, most);
+    add_colour_bar(sheet, {1482, 60, 30, height - 50}, colours, scale.least, scale.most);
     write_png(sheet, file);
 }
 
