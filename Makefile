@@ -1,7 +1,8 @@
 # make            builds build/release/bin/kropla
 # make demo       runs the droplet case into demo/droplet and draws demo/pictures; what was there is replaced
 # make test       builds and runs all tests
-# make flood      500 random cases, each frame verified by code of its own: docs/reliability.md; N=20: fewer, SEED=2: others.
+# make flood      500 random cases, each frame verified by code of its own: docs/reliability.md; N=20: fewer, SEED=2: others;
+#                 FLOW=1: of bodies and liquids in a flow.
 #                 A case that fails is left in flood/failed
 # make bench      builds and runs the benchmarks; beside CGAL, if libcgal-dev is installed
 # make bench-peers  the moving droplet by Kropla and by the mesh generators that are installed (Gmsh, TetGen), one
@@ -41,7 +42,7 @@ test: all
 
 flood: all
 	python3 tests/flood/flood.py build/release/bin/kropla --cases $(or $(N),500) --seed $(or $(SEED),1) \
-		--failed flood/failed $(if $(MARKDOWN),--markdown)
+		--failed flood/failed $(if $(FLOW),--flow) $(if $(MARKDOWN),--markdown)
 
 bench: packages
 	cmake --preset bench

@@ -46,11 +46,14 @@ Draft draft(const Domain& domain, std::uint64_t seed, const AdaptOptions& option
 }  // namespace
 
 Mesh initial_mesh(const Domain& domain, const AdaptOptions& options) {
-    constexpr std::uint64_t drafts = 3;  // by other random points
-    for (std::uint64_t i = 0;; ++i) {
-        Draft made = draft(domain, options.seed + i, options);
+    constexpr std::uint64_t least_drafts = 3, most_drafts = 12;  // by other random points
+    constexpr int few_tets = 200'000;  // in all drafts: as long as it costs little, there may be more than the least
+    int tets = 0;
+    for (std::uint64_t i = 1;; ++i) {
+        Draft made = draft(domain, options.seed + i - 1, options);
         if (made.quality.max_aspect_ratio <= options.floor) return in_spatial_order(made.mesh);
-        if (i + 1 == drafts) give_up(domain, std::move(made), options.floor);
+        tets += made.quality.tets;
+        if (i == most_drafts || (i >= least_drafts && tets > few_tets)) give_up(domain, std::move(made), options.floor);
     }
 }
 

@@ -1,6 +1,6 @@
 """The flood: random legal cases, each run under a limit of time and memory, each frame verified by code of its own.
 
-    flood.py PROGRAM [--cases N] [--seed S] [--first I] [--replay FILE ...] [--failed DIR] [--markdown]
+    flood.py PROGRAM [--flow] [--cases N] [--seed S] [--first I] [--replay FILE ...] [--failed DIR] [--markdown]
 
 A case ends with exit 0 and its floors and balances, or is refused for a reason that is true. What fails or is
 refused is left behind in DIR as NNN.toml, with what was wrong on top; --replay runs such files again. docs/reliability.md tells more.
@@ -22,6 +22,8 @@ import tomllib
 import traceback
 
 import case_maker
+import flow_judge
+import flow_maker
 import judge
 from case_file import Case
 
@@ -50,6 +52,13 @@ def run_case(program, file, folder, seconds):
     return process.returncode, errors, usage.ru_utime + usage.ru_stime
 
 
+def judged(folder, text, code, errors):
+    file, out = folder / "case.toml", folder / "out"
+    if "flow" in tomllib.loads(text):
+        return flow_judge.judge(flow_judge.FlowCase(file), out, code, errors)
+    return judge.judge(Case(file), out, code, errors)
+
+
 def verdict_on(program, text, seconds):
     """The verdict on the case, and the CPU seconds of its run."""
     with tempfile.TemporaryDirectory(prefix="flood-") as name:
@@ -59,9 +68,15 @@ def verdict_on(program, text, seconds):
         if code in (-signal.SIGXCPU, -signal.SIGKILL):
             return judge.Verdict("failed", [f"not done after {taken:.0f} s of CPU"]), taken
         try:
-            return judge.judge(Case(folder / "case.toml"), folder / "out", code, errors), taken
+            return judged(folder, text, code, errors), taken
         except Exception:  # what is left cannot even be read: a fault of the run, or of the judge; both are to be seen
             return judge.Verdict("failed", [traceback.format_exc(limit=-1)]), taken
+
+
+def made_case(arguments, number):
+    if arguments.flow:
+        return flow_maker.make_case(arguments.seed, number, arguments.most_steps)
+    return case_maker.make_case(arguments.seed, number, arguments.least_cells, arguments.most_cells, arguments.most_steps)
 
 
 def one(job):
@@ -71,8 +86,7 @@ def one(job):
         name, text = path.name, path.read_text(encoding="utf-8")
     else:
         name = f"{number:03}.toml"
-        text = case_maker.make_case(arguments.seed, number, arguments.least_cells, arguments.most_cells,
-                                    arguments.most_steps)
+        text = made_case(arguments, number)
     started = time.time()
     verdict, taken = verdict_on(arguments.program, text, arguments.seconds)
     return name, text, verdict, taken, time.time() - started
@@ -92,6 +106,11 @@ def kinds_of(text):
     case = tomllib.loads(text)
     bodies = case.get("body", [])
     span = [high - low for low, high in zip(case["domain"]["min"], case["domain"]["max"])]
+    if "flow" in case:
+        motions = [body.get("motion", {}).get("kind", "path") for body in bodies]
+        return {"all": True, "liquid bodies": "flow" in motions, "free bodies": "free" in motions,
+                "several bodies": len(bodies) > 1, "layers": any("layer" in body for body in bodies), "heat": "heat" in case,
+                "species": "species" in case, "gravity": "gravity" in case["flow"], "open": "pressure" in text}
     return {"all": True, "heat": "heat" in case, "layers": any("layer" in body for body in bodies),
             "several bodies": len(bodies) > 1, "ellipsoids": any(body["shape"] == "ellipsoid" for body in bodies),
             "turning": any("angle" in body.get("motion", {}) for body in bodies),
@@ -140,11 +159,11 @@ class Table:
         done = [verdict for _, verdict, _ in self.results if verdict.outcome == "done"]
         refusals = collections.Counter(v.outcome for _, v, _ in self.results if v.outcome.startswith("refused"))
         most = {name: max((getattr(v, name) for v in done), default=math.nan)
-                for name in ("cells", "transfer_error", "energy_drift", "volume_drift", "attempts")}
+                for name in ("cells", "transfer_error", "energy_drift", "volume_drift", "mass_drift", "attempts")}
         said = ", ".join(f"{count} ({kind.removeprefix('refused: ')})" for kind, count in refusals.items())
         return (f"Of those done: up to {most['cells']} cells and {most['attempts']} attempts at a step; transfer error "
                 f"{most['transfer_error']:.1e}, energy off its balance {most['energy_drift']:.1e}, volumes off "
-                f"{most['volume_drift']:.1e} at most. Refusals: {said or 'none'}.")
+                f"{most['volume_drift']:.1e}, masses of what flows {most['mass_drift']:.1e} at most. Refusals: {said or 'none'}.")
 
     def end(self):
         """Prints the last line; the exit code."""
@@ -160,6 +179,7 @@ class Table:
 def arguments_given():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", help="kropla")
+    parser.add_argument("--flow", action="store_true", help="cases of a flow")
     parser.add_argument("--cases", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="the number of the first case")

@@ -32,6 +32,7 @@ class Verdict:
     transfer_error: float = 0.0
     energy_drift: float = 0.0
     volume_drift: float = 0.0
+    mass_drift: float = 0.0  # of what flows
     attempts: int = 0
 
 

@@ -198,6 +198,13 @@ def rounding(scene):
 
 def look_at(frame, scene, t):
     """The figures of a frame at time `t`, with the faults found first."""
+    figures = look_at_cells(frame, scene)
+    check_surfaces(frame, scene, t, figures)
+    return figures
+
+
+def look_at_cells(frame, scene):
+    """The same but for where the bodies are."""
     figures = Figures()
     tolerance = rounding(scene)
     measure_cells(frame, figures)
@@ -212,7 +219,6 @@ def look_at(frame, scene, t):
         figures.faults.append("there are vertices without a cell")
     if frame.temperature and not all(map(math.isfinite, frame.temperature)):
         figures.faults.append("a temperature is not finite")
-    check_surfaces(frame, scene, t, figures)
     return figures
 
 

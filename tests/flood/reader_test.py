@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+import flow_judge
 import judge
 import mesh_checks
 import vtu
@@ -121,6 +122,77 @@ class Reader(unittest.TestCase):
         said = 'kropla: at t = 500 ms body "ball" is {} m from the wall z min, too close: R/r 11, limit 10'
         for gap_told, outcome in ((1.0, "refused: floor"), (0.9, "failed")):
             self.assertEqual(judge.judge(self.case, self.folder, 3, said.format(gap_told)).outcome, outcome)
+
+
+FLOW = """
+domain = {min = [0, 0, 0], max = [9, 6, 6]}
+size = {surface = 0.5, far = 1.5}
+time = {end = 1, steps = 2}
+output = {every = 1}
+[[body]]
+name = "ball"
+shape = "sphere"
+centre = [2, 3, 3]
+radius = 1
+motion = {x = "0.2*t"}
+[[body]]
+name = "drop"
+shape = "sphere"
+centre = [6, 3, 3]
+radius = 1
+motion = {kind = "flow"}
+[flow.region]
+surroundings = {density = 1, viscosity = 0.1}
+drop = {density = 2, viscosity = 0.1}
+[flow.surface.drop]
+tension = 1
+[heat.region]
+surroundings = {conductivity = 1, density = 1, specific_heat = 1, initial = 300}
+ball = {conductivity = 1, density = 1, specific_heat = 1, initial = 400}
+drop = {conductivity = 1, density = 1, specific_heat = 1, initial = 400}
+"""
+
+
+class Flow(unittest.TestCase):
+    """What steps.csv says of a run, spoilt."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        file, cls.out = pathlib.Path(folder.name) / "case.toml", pathlib.Path(folder.name) / "out"
+        file.write_text(FLOW, encoding="utf-8")
+        cls.done = subprocess.run([PROGRAM, "run", file, "--out", cls.out], capture_output=True, text=True, check=True)
+        cls.case = flow_judge.FlowCase(file)
+
+    def setUp(self):
+        self.rows = judge.rows_of(self.out)
+
+    def faults(self):
+        verdict = judge.Verdict("done")
+        volumes = flow_judge.check_frames(self.case, judge.frames_of(self.out), verdict)
+        flow_judge.check_balances(self.case, self.rows, volumes, verdict)
+        return " | ".join(verdict.faults)
+
+    def test_a_good_run_has_no_faults(self):
+        verdict = flow_judge.judge(self.case, self.out, 0, self.done.stderr)
+        self.assertEqual((verdict.outcome, verdict.faults), ("done", []))
+        self.assertEqual(self.case.kinds, {"ball": "path", "drop": "flow"})
+
+    def test_what_is_not_so(self):
+        wrong = {"mass_error_drop [kg]": "1e-10", "energy_error [J]": "1e-6", "area_drop [m^2]": "12.5", "x_ball [m]": "2.3",
+                 "force_z_ball [N]": "nan", "energy_transfer_error": "1e-9"}
+        said = {"mass_error_drop [kg]": "masses", "energy_error [J]": "the energy", "area_drop [m^2]": "less than a ball",
+                "x_ball [m]": "off its path", "force_z_ball [N]": "is nan", "energy_transfer_error": "transfers"}
+        self.assertEqual(self.faults(), "")
+        for name, value in wrong.items():
+            kept, self.rows[1][name] = self.rows[1][name], value
+            self.assertIn(said[name], self.faults(), name)
+            self.rows[1][name] = kept
+
+    def test_codes_that_are_no_end(self):
+        for code, errors in ((1, ""), (-9, ""), (4, "kropla: x"), (3, "kropla: a\nb")):
+            self.assertEqual(flow_judge.judge(self.case, self.out, code, errors).outcome, "failed", (code, errors))
 
 
 class Figures(unittest.TestCase):
