@@ -46,7 +46,7 @@ Draft draft(const Domain& domain, std::uint64_t seed, const AdaptOptions& option
 }  // namespace
 
 Mesh initial_mesh(const Domain& domain, const AdaptOptions& options) {
-    constexpr std::uint64_t least_drafts = 3, most_drafts = 12;  // by other random points
+    constexpr std::uint64_t least_drafts = 3, most_drafts = 8;  // by other random points
     constexpr int few_tets = 200'000;  // in all drafts: as long as it costs little, there may be more than the least
     int tets = 0;
     for (std::uint64_t i = 1;; ++i) {

@@ -7,7 +7,7 @@
 namespace kropla {
 
 /// The mesh with which a moving domain begins, at t = 0: generated, improved, repaired, its slots in spatial order; where
-/// a cell stays above the floor, with other random points, three times in all, or up to twelve times if meshes are small.
+/// a cell stays above the floor, with other random points, three times in all, or up to eight times if meshes are small.
 /// Same domain, same `options.seed`, same mesh. The watch is told how far it is.
 /// Throws DomainError if the domain cannot be meshed as it is asked for; StuckError, with the mesh as it is, if a cell
 /// stays above `options.floor`.
