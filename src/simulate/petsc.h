@@ -4,6 +4,7 @@
 
 #include <petscksp.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -41,6 +42,7 @@ public:
 private:
     std::vector<std::string> words_;  // PETSc keeps pointers into the command line
     std::vector<char*> arguments_;
+    std::filesystem::path folder_;  // of a process that is alone, for MPI; as long as this
 };
 
 struct PetscDestroy {

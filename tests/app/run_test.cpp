@@ -10,10 +10,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <numeric>
 #include <regex>
+#include <unistd.h>
 
 namespace kropla {
 namespace {
@@ -236,6 +239,25 @@ TEST(Run, LeavesAReportIfTheInitialMeshCannotBeMade) {
     EXPECT_EQ(kropla_program(folder, "run high.toml --out d").code, 0);
     EXPECT_FALSE(std::filesystem::exists(folder.path / "d/ended.toml"));
     EXPECT_NE(contents(folder.path / "d/report.html").find("Finished at"), std::string::npos);
+}
+
+// Open MPI has one folder for all processes of a user, that may come and go while one begins. Here it cannot be.
+TEST(Run, SharesNoFolderForTemporaryFilesWithOtherRuns) {
+    const TemporaryFolder folder;
+    write(folder.path / "case.toml", short_case(1));
+    std::array<char, 256> host{};
+    ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+    const std::string name = std::string(host.data());
+    std::filesystem::create_directory(folder.path / "tmp");
+    write(folder.path / "tmp" / ("ompi." + name.substr(0, name.find('.')) + '.' + std::to_string(getuid())), "");
+    const char* before = std::getenv("TMPDIR");
+    const std::string kept = before == nullptr ? "" : before;
+    setenv("TMPDIR", (folder.path / "tmp").c_str(), 1);
+    const Outcome it = kropla_program(folder, "run case.toml --out d");
+    if (before == nullptr) unsetenv("TMPDIR");
+    else setenv("TMPDIR", kept.c_str(), 1);
+    EXPECT_EQ(it.code, 0) << it.err;
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path / "tmp"), {}), 1);
 }
 
 // A floor so high that the size of cells is to give way to it.
