@@ -44,7 +44,7 @@ void add_colour_bar(Sheet& sheet, const Place& place, vtkScalarsToColors* colour
     }
     add_bands(sheet, place, bands);
     add_outline(sheet, place, border_colour, 1);
-    const std::vector<double> ticks = round_ticks(least, most, 5);
+    const std::vector<double> ticks = round_ticks(least, most, 6);
     for (const double value : ticks) {
         const double y = place.top + place.height * (most - value) / (most - least);
         add_filled(sheet, {place.left + place.width, y - 0.75, 7, 1.5}, border_colour);

@@ -5,6 +5,7 @@
 #include "flow.h"
 #include "frames.h"
 #include "layout.h"
+#include "report/units.h"
 #include "scene.h"
 #include "sheet.h"
 
@@ -99,7 +100,7 @@ void draw_positions(const std::vector<RunFrame>& frames, const std::filesystem::
         add_mesh_view(sheet, view, frames[i], 1.8);
         const double moved = distance(frames[i].centre, frames.front().centre);
         add_text(sheet, left + side / 2, top + side + caption / 2 + 2,
-                 fmt::format("{}    moved {:.1f} mm", time_label(frames[i].time), moved * 1e3), {.size = 20});
+                 fmt::format("{}    moved {}", time_label(frames[i].time), with_unit(moved, "m", 3)), {.size = 20});
         if (i + 1 == frames.size()) add_scale_bar(sheet, view, bar_length(view));
     }
     write_png(sheet, file);

@@ -1,6 +1,7 @@
 #include "sheet.h"
 
 #include <kropla/base/error.h>
+#include "report/units.h"
 
 #include <vtkActor2D.h>
 #include <vtkCamera.h>
@@ -22,7 +23,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 #include <utility>
 
 namespace kropla::pictures {
@@ -159,7 +159,7 @@ void add_scale_bar(Sheet& sheet, const View& view, double length) {
     add_filled(sheet, plate, {1, 1, 1});
     const double middle = plate.left + width / 2;
     add_filled(sheet, {middle - bar / 2, plate.top + height - 9, bar, 3}, {0.1, 0.1, 0.1});
-    add_text(sheet, middle, plate.top + 13, fmt::format("{:g} mm", length * 1e3), {.size = 17});
+    add_text(sheet, middle, plate.top + 13, with_unit(length, "m"), {.size = 17});
 }
 
 /// Maps the levels 0 ... `from` of each colour onto 0 ... `to`, rounded.
