@@ -46,7 +46,8 @@ Gap nearest_gap(const Snapshot& at, std::size_t body, const Vec3& x, double beyo
         const double gap = std::sqrt(at.walls->nearest(x).squared_distance);
         look_at(gap, share_of_gap * (gap - own), fixed_walls, body);
     }
-    const auto at_least = [&](double d) {  // room beside bodies so far, as far as they stand out
+    const auto at_least = [&](double d) {  // room beside bodies whose boxes are so far
+        if (d == 0) return -infinity;
         const double gap = d - own - at.tree->most_outward;
         return gap * (gap > 0 ? share_between_layers : share_of_gap);
     };

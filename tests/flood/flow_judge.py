@@ -4,10 +4,9 @@ import math
 import tomllib
 
 import mesh_checks
-import vtu
 from case_file import scene_of
 from geometry import minus, norm
-from judge import TRANSFER_ERROR, Verdict, check_series, frames_of, rows_of
+from judge import TRANSFER_ERROR, Verdict, check_series, frames_of, read_frame, rows_of
 
 CONSERVED = 1e-12  # [-] of a region's mass, and of the energy, in a step
 ON_ITS_WAY = 1e-9  # [-] of the box: where a body that goes by a path is
@@ -31,10 +30,8 @@ class FlowCase:
 def check_frames(case, frames, verdict):
     volumes = {}
     for _, path in frames:
-        try:
-            frame = vtu.Frame(path)
-        except (vtu.Damaged, OSError) as error:
-            verdict.faults.append(f"{path.name}: {error}")
+        frame = read_frame(path, verdict)
+        if frame is None:
             continue
         figures = mesh_checks.look_at_cells(frame, case.scene)
         verdict.faults += [f"{path.name}: {fault}" for fault in figures.faults[:5]]

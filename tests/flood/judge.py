@@ -58,13 +58,20 @@ def check_series(case, rows, frames, verdict):
         verdict.faults.append(f"frames.pvd has the times {[t for t, _ in frames]}, the steps {shown}")
 
 
+def read_frame(path, verdict):
+    """The frame; None, with a fault, if the file is not one."""
+    try:
+        return vtu.Frame(path)
+    except (vtu.Damaged, OSError) as error:
+        verdict.faults.append(f"{path.name}: {error}")
+        return None
+
+
 def check_frames(case, rows, frames, verdict):
     first = None
     for t, path in frames:
-        try:
-            frame = vtu.Frame(path)
-        except (vtu.Damaged, OSError) as error:
-            verdict.faults.append(f"{path.name}: {error}")
+        frame = read_frame(path, verdict)
+        if frame is None:
             continue
         figures = mesh_checks.look_at(frame, case.scene, t)
         verdict.faults += [f"{path.name}: {fault}" for fault in figures.faults[:5]]
