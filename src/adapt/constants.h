@@ -40,6 +40,8 @@ inline constexpr int most_swap_rounds = 6;
 inline constexpr double smoothing_goal = 0.9;
 /// The same for the vertex of a split [of the worst R/r allowed]. Of no account from 0.5 to 1 in the ten steps; chosen.
 inline constexpr double split_goal = 0.8;
+/// [-] R/r from which a cell is flat but for rounding, and tells no direction in which to go. Chosen.
+inline constexpr double flat = 1e6;
 /// [of the worst R/r] cells that are as bad take part in the direction of descent, as in [Freitag, Ollivier-Gooch 1997].
 /// Smaller: directions that help no cell much, 6 clusters at 0.8. Larger: the descent zigzags, R/r 5.05 at 0.99. The ten
 /// steps.

@@ -28,6 +28,12 @@ double aspect_ratio_of(const Mesh& mesh, const std::array<Vertex, 4>& v) {
     return tet_aspect_ratio(mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]], mesh.position[v[3]]);
 }
 
+Vec3 middle_of(const Mesh& mesh, std::span<const Vertex> vertices) {
+    Vec3 sum;
+    for (Vertex v : vertices) sum += mesh.position[v];
+    return sum / static_cast<double>(vertices.size());
+}
+
 /// A vertex may be pulled along an edge that is held by all that holds the vertex.
 bool may_collapse(const Mesh& mesh, Vertex from, Vertex to, std::span<const Tet> around) {
     const Constraint held = constraint(mesh, from, around);
@@ -73,7 +79,10 @@ std::optional<Cavity> edge_split(const Mesh& mesh, const Shell& shell, Edge edge
             star.push_back({mesh.position[a], mesh.position[b], mesh.position[c]});
         }
     const Vec3 middle = (mesh.position[edge.a] + mesh.position[edge.b]) / 2;
-    const Place place = best_place(star, middle, freedom(held), split_goal * worst_allowed);
+    const Freedom free = freedom(held);
+    Place place = best_place(star, middle, free, split_goal * worst_allowed);
+    if (place.worst > flat)  // the edge of a cell that is so: the middle is in its plane
+        place = best_place(star, middle + restricted(middle_of(mesh, shell.ring) - middle, free) / 2, free, split_goal * worst_allowed);
     if (place.worst > worst_allowed || place.worst == infinity) return std::nullopt;
 
     Cavity cavity;

@@ -22,9 +22,22 @@ std::string in_gap(const Domain& domain, const Approach& near, const Trouble& tr
                             : "a smaller one may do");
 }
 
+/// A body that is thinner there than the least size resolves, or leaves open less. Empty where it is not.
+std::string in_thin_place(const Snapshot& at, const Body& body, std::size_t number, const Trouble& trouble) {
+    const Shape& shape = at.shapes[number];
+    const double least = least_size(at.size), narrow = least / gap_share;
+    if (surface_size(at, number, trouble.place) > least) return "";
+    const double thickness = neck_at(shape, trouble.place, true, narrow), slot = neck_at(shape, trouble.place, false, narrow);
+    const double width = std::min(thickness, slot);
+    if (!(width < narrow)) return "";
+    return named(body) + (thickness <= slot ? " is " + metres(width) + " thick" : " leaves open " + metres(width)) + " at " +
+           place_words(closest_point(shape, trouble.place)) + ", " + written(width / least) + " of size.least = " + metres(least) +
+           ": too thin for the mesh; at most " + metres(rounded_down(gap_share * width)) + " would do";
+}
+
 /// A neck of a body that deforms, or a notch, as narrow as a size or two. Empty where there is none.
 std::string in_neck(const Snapshot& at, const Body& body, std::size_t number, const Trouble& trouble) {
-    if (!body.deformation) return "";
+    if (!body.deformation) return in_thin_place(at, body, number, trouble);
     const Shape& shape = at.shapes[number];
     const double size = surface_size(at, number, trouble.place), narrow = narrow_neck_in_sizes * size;
     const double neck = neck_at(shape, trouble.place, true, narrow), notch = neck_at(shape, trouble.place, false, narrow);

@@ -41,6 +41,8 @@ constexpr Number squared_norm(const Vector3<Number>& a) {
 inline double norm(const Vec3& a) { return std::sqrt(squared_norm(a)); }
 inline double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
 inline Vec3 normalised(const Vec3& a) { return a / norm(a); }
+/// [rad] 0 to pi.
+inline double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
 /// Six times the signed volume of the tetrahedron (a, b, c, d), rounded; for its sign see orient3d.

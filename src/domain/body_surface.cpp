@@ -119,17 +119,20 @@ LocalSize size_in_necks(const Shape& shape, double least, double most) {
 
 Snapshot snapshot(const Domain& domain, double t, std::span<const BodySurface> deforming,
                   const Array<Vertex, Vec3>& places, bool uneven) {
-    Snapshot at = snapshot(domain, t);
+    Snapshot at = without_tree(domain, t);
+    for (std::size_t body = 0; body < at.shapes.size(); ++body)
+        if (!domain.bodies[body].deformation) see_thin_places(at, body);
     for (const BodySurface& surface : deforming) {
         Shape& shape = at.shapes[surface.body];
         shape = shape_of(surface, places, domain.box);
         const double most = surface_size(at, surface.body), least = std::min(least_size(at.size), most);
         if (at.layers[surface.body]) continue;  // its triangles stay
-        LocalSize& local = at.local_sizes[surface.body];
-        if (LocalSize in_necks = size_in_necks(shape, least, most))
-            local = !local ? in_necks : [given = local, in_necks](const Vec3& x) { return std::min(given(x), in_necks(x)); };
+        if (LocalSize in_necks = size_in_necks(shape, least, most)) {
+            make_finer(at.local_sizes[surface.body], std::move(in_necks));
+            at.local_slope = steepest_growth;
+        }
     }
-    if (!deforming.empty()) plant_tree(at);
+    plant_tree(at);
     at.narrow = uneven || has_narrow_gap(at);
     return at;
 }

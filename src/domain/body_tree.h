@@ -14,6 +14,12 @@ struct BodyTree {
     double most_outward;         // [m] of all bodies
 };
 
+/// The snapshot of the bodies as they stand, to be completed by what follows, in this order.
+[[nodiscard]] Snapshot without_tree(const Domain& domain, double t);
+/// Sizes on the surface of a body fall where it is thin, if triangles bound it.
+void see_thin_places(Snapshot& at, std::size_t body);
+/// `local`, if there is one, or the other one, whichever is less.
+void make_finer(LocalSize& local, LocalSize other);
 /// Makes the tree of the snapshot's shapes, which are not to change any more; none for a few.
 void plant_tree(Snapshot& at);
 
@@ -28,24 +34,36 @@ double least_of_bodies(const Snapshot& at, const Vec3& x, double bound, const At
     return bound;
 }
 
+/// As surface_size, at a point of the surface of a body with a local size.
+[[nodiscard]] double size_at_surface(const Snapshot& at, std::size_t body, const Vec3& on_surface);
+
 /// Distances of bodies from one place, each worked out once.
 class DistancesFrom {
 public:
     DistancesFrom(const Snapshot& at, const Vec3& x) : at_(at), x_(x) {}
     [[nodiscard]] const Vec3& place() const { return x_; }
     /// As signed_distance.
-    [[nodiscard]] double operator()(std::size_t body) const {
-        for (std::size_t i = 0; i < count_; ++i)
-            if (known_[i].body == body) return known_[i].distance;
-        const double distance = signed_distance(at_.shapes[body], x_);
-        if (count_ < known_.size()) known_[count_++] = {body, distance};
-        return distance;
+    [[nodiscard]] double operator()(std::size_t body) const { return nearest(body).signed_distance; }
+    /// As surface_size.
+    [[nodiscard]] double surface_size(std::size_t body) const {
+        return has_local_size(at_, body) ? size_at_surface(at_, body, nearest(body).point) : kropla::surface_size(at_, body);
     }
 
 private:
+    /// The point only where sizes ask for it.
+    [[nodiscard]] SurfacePlace nearest(std::size_t body) const {
+        for (std::size_t i = 0; i < count_; ++i)
+            if (known_[i].body == body) return known_[i].place;
+        const Shape& shape = at_.shapes[body];
+        const SurfacePlace place =
+            has_local_size(at_, body) ? nearest_on_surface(shape, x_) : SurfacePlace{{}, signed_distance(shape, x_)};
+        if (count_ < known_.size()) known_[count_++] = {body, place};
+        return place;
+    }
+
     struct Known {
         std::size_t body;
-        double distance;
+        SurfacePlace place;
     };
     const Snapshot& at_;
     Vec3 x_;

@@ -4,7 +4,9 @@
 
 #include "domain/approach.h"
 #include "domain/body_tree.h"
+#include "domain/thin_places.h"
 #include "domain/triangle_tree.h"
+#include "domain/triangulated_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +56,7 @@ std::shared_ptr<const BodyTree> tree_of(const Snapshot& at) {
 
 void plant_tree(Snapshot& at) { at.tree = tree_of(at); }
 
-Snapshot snapshot(const Domain& domain, double t) {
+Snapshot without_tree(const Domain& domain, double t) {
     Snapshot at{domain.box, domain.size, {}};
     at.walls = domain.walls;
     at.size.growth = std::min(at.size.growth, steepest_growth);
@@ -63,7 +65,32 @@ Snapshot snapshot(const Domain& domain, double t) {
         at.layers.push_back(body.layer);
         at.sizes.push_back(body.size);
         at.local_sizes.push_back(body.size ? body.local_size : domain.size.local);
+        if (at.local_sizes.back()) at.local_slope = steepest_growth;
     }
+    return at;
+}
+
+void see_thin_places(Snapshot& at, std::size_t body) {
+    const Shape& shape = at.shapes[body];
+    if (!shape.surface) return;
+    const double most = surface_size(at, body);
+    const auto thin = shape.surface->thin_places(std::min(least_size(at.size), most), most);
+    if (!thin->any()) return;
+    const double growth = at.size.growth;
+    at.local_slope = std::max(at.local_slope, growth);
+    make_finer(at.local_sizes[body], [centre = shape.centre, orientation = shape.orientation, thin, growth](const Vec3& x) {
+        return thin->size(rotated_back(orientation, x - centre), growth);
+    });
+}
+
+void make_finer(LocalSize& local, LocalSize other) {
+    if (!local) local = std::move(other);
+    else local = [given = local, other = std::move(other)](const Vec3& x) { return std::min(given(x), other(x)); };
+}
+
+Snapshot snapshot(const Domain& domain, double t) {
+    Snapshot at = without_tree(domain, t);
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) see_thin_places(at, body);
     plant_tree(at);
     return at;
 }
@@ -91,15 +118,12 @@ double surface_size(const Snapshot& at, std::size_t body) {
     return std::min(asked_size(at, body), most_per_height * top);
 }
 
-double surface_size(const Snapshot& at, std::size_t body, const Vec3& x) {
-    const double most = surface_size(at, body);
-    if (!has_local_size(at, body)) return most;
-    return std::min(most, std::max(least_size(at.size), at.local_sizes[body](closest_point(at.shapes[body], x))));
+double size_at_surface(const Snapshot& at, std::size_t body, const Vec3& on_surface) {
+    return std::min(surface_size(at, body), std::max(least_size(at.size), at.local_sizes[body](on_surface)));
 }
 
-double size_slope(const Snapshot& at) {
-    const bool local = std::ranges::any_of(at.local_sizes, [](const LocalSize& size) { return bool(size); });
-    return at.size.growth + (local ? steepest_growth : 0);
+double surface_size(const Snapshot& at, std::size_t body, const Vec3& x) {
+    return has_local_size(at, body) ? size_at_surface(at, body, closest_point(at.shapes[body], x)) : surface_size(at, body);
 }
 
 double outward_shift(const Shape& shape, double size) {
@@ -231,7 +255,7 @@ double target_size(const Snapshot& at, const DistancesFrom& distances) {
                            [&](double d) { return at.tree->least_size + at.size.growth * d; },
                            [&](std::size_t body) {
                                const double rise = at.size.growth * rising_distance(at, body, distances(body));
-                               return surface_size(at, body, distances.place()) + rise;
+                               return distances.surface_size(body) + rise;
                            });
     return at.narrow ? size_in_gap(at, distances.place(), size) : size;
 }

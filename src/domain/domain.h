@@ -120,6 +120,7 @@ struct Snapshot {
     std::shared_ptr<const TriangleTree> walls = {};
     std::vector<std::optional<double>> sizes = {};  // per body: its own at its surface [m]
     std::vector<LocalSize> local_sizes = {};        // per body; none where its size is one
+    double local_slope = 0;                         // [-] by how much these rise per metre, at most
     std::shared_ptr<const BodyTree> tree = {};      // of `shapes`, by which many are asked fast; none: all are asked
 };
 [[nodiscard]] Snapshot snapshot(const Domain& domain, double t);
@@ -139,7 +140,7 @@ struct Snapshot {
     return body < at.local_sizes.size() && at.local_sizes[body];
 }
 /// How much the target size may rise per metre [-].
-[[nodiscard]] double size_slope(const Snapshot& at);
+[[nodiscard]] inline double size_slope(const Snapshot& at) { return at.size.growth + at.local_slope; }
 /// The largest target size in the box [m]: size.far, or less where the box is so thin that cells of that size
 /// would reach from one wall to the opposite one.
 [[nodiscard]] double largest_size(const Box& box, const SizeField& size);

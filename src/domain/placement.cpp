@@ -3,6 +3,8 @@
 #include <kropla/base/error.h>
 #include "domain/approach.h"
 #include <kropla/domain/domain.h>
+#include "domain/thin_places.h"
+#include "domain/triangulated_surface.h"
 
 #include <algorithm>
 #include <cassert>
@@ -40,6 +42,20 @@ void lower(SizeLimit& limit, double most, const std::string& why) {
 void lower_by_gap(SizeLimit& limit, const Domain& domain, const Approach& approach, double least_gap) {
     if (approach.gap == 0) throw DomainError(in_words(domain, approach));
     lower(limit, size_for_gap(domain, approach, least_gap), in_words(domain, approach) + ", too close");
+}
+
+/// A body, or a slot in it, that is thinner than that many of the least sizes cannot be meshed.
+void check_thickness(const Domain& domain, const Snapshot& at, double least_width) {
+    for (std::size_t body = 0; body < at.shapes.size(); ++body) {
+        if (!at.shapes[body].surface) continue;
+        const double most = surface_size(at, body), least = std::min(least_size(at.size), most);
+        const ThinPlaces::Width narrowest = at.shapes[body].surface->thin_places(least, most)->narrowest();
+        if (narrowest.across >= least_width * least) continue;
+        const Vec3 place = at.shapes[body].centre + rotated(at.shapes[body].orientation, narrowest.at);
+        throw DomainError(named(domain.bodies[body]) + (narrowest.inside ? " is " : " leaves open ") + metres(narrowest.across) +
+                          (narrowest.inside ? " thick" : "") + " at " + place_words(place) + ", too thin for size.least = " +
+                          metres(least) + "; at most " + metres(rounded_down(gap_share * narrowest.across)) + " would do");
+    }
 }
 
 }  // namespace
@@ -95,6 +111,7 @@ void check_placement(const Domain& domain, double t, double least_gap) {
     assert(domain.size.surface > 0 && domain.size.far >= domain.size.surface && domain.size.growth >= 0);
     const SizeLimit limit = surface_limit(domain, t, least_gap);
     if (limit.most < domain.size.surface) throw DomainError(too_coarse(limit, domain.size.surface));
+    check_thickness(domain, snapshot(domain, t), least_gap);
 }
 
 }  // namespace kropla

@@ -142,6 +142,13 @@ Vec3 closest_point(const Shape& shape, const Vec3& x) {
     return shape.centre + rotated(shape.orientation, closest);
 }
 
+SurfacePlace nearest_on_surface(const Shape& shape, const Vec3& x) {
+    if (!shape.surface) return {closest_point(shape, x), signed_distance(shape, x)};
+    const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
+    const NearestPlace nearest = shape.surface->tree().nearest(p);
+    return {shape.centre + rotated(shape.orientation, nearest.point), shape.surface->signed_distance(p, nearest)};
+}
+
 double thickness_at(const Shape& shape, const Vec3& x) {
     const Vec3 p = rotated_back(shape.orientation, x - shape.centre);
     if (shape.surface) return 2 * shape.surface->touching_ball(p, true, shape.surface->farthest());

@@ -67,6 +67,12 @@ struct Shape {
 [[nodiscard]] double signed_distance(const Shape& shape, const Vec3& x);
 /// The point of the surface nearest to `x`.
 [[nodiscard]] Vec3 closest_point(const Shape& shape, const Vec3& x);
+/// Both, for little more than one of them.
+struct SurfacePlace {
+    Vec3 point;              // nearest to x
+    double signed_distance;  // [m]
+};
+[[nodiscard]] SurfacePlace nearest_on_surface(const Shape& shape, const Vec3& x);
 /// How thick the shape is at the place of its surface that is nearest to `x`, of an ellipsoid `x` itself: the diameter of
 /// the largest ball that touches there from inside [m].
 [[nodiscard]] double thickness_at(const Shape& shape, const Vec3& x);

@@ -7,6 +7,7 @@
 // of the surface and its mirror image together, which is closed there: their parts across the face cancel.
 
 #include "domain/triangulated_surface.h"
+#include "domain/thin_places.h"
 
 #include <kropla/base/error.h>
 #include <kropla/domain/words.h>
@@ -16,12 +17,22 @@
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
 
 namespace kropla {
+
+struct FoundThinPlaces {
+    struct Of {
+        double least, most;  // [m]
+        std::shared_ptr<const ThinPlaces> places;
+    };
+    std::mutex busy;
+    std::vector<Of> known;
+};
 
 namespace {
 
@@ -282,8 +293,6 @@ bool turn_out(const Draft& d, const std::vector<std::size_t>& part) {
     return turned;
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
-
 }  // namespace
 
 TriangulatedSurface::TriangulatedSurface(std::vector<Vec3> points, std::vector<Triangle> triangles)
@@ -307,6 +316,7 @@ TriangulatedSurface::TriangulatedSurface(std::vector<Vec3> points, std::vector<T
         }
     }
     centroid_ = origin + moment / volume_;
+    thin_ = std::make_shared<FoundThinPlaces>();
 }
 
 const Vec3& TriangulatedSurface::outwards(const NearestPlace& at) const {
@@ -316,10 +326,17 @@ const Vec3& TriangulatedSurface::outwards(const NearestPlace& at) const {
     return corner_normal_[as_size(triangles()[at.triangle][part - 4])];
 }
 
-double TriangulatedSurface::signed_distance(const Vec3& x) const {
-    const NearestPlace nearest = tree_.nearest(x);
+double TriangulatedSurface::signed_distance(const Vec3& x, const NearestPlace& nearest) const {
     const double far = std::sqrt(nearest.squared_distance);
     return dot(x - nearest.point, outwards(nearest)) < 0 ? -far : far;
+}
+
+std::shared_ptr<const ThinPlaces> TriangulatedSurface::thin_places(double least, double most) const {
+    const std::lock_guard alone(thin_->busy);
+    for (const auto& of : thin_->known)
+        if (of.least == least && of.most == most) return of.places;
+    thin_->known.push_back({least, most, std::make_shared<const ThinPlaces>(*this, least, most)});
+    return thin_->known.back().places;
 }
 
 namespace {

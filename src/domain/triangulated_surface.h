@@ -4,6 +4,8 @@
 #include "domain/triangle_tree.h"
 #include <kropla/domain/shape.h>
 
+#include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -15,6 +17,12 @@ struct SurfaceError : DomainError {
     std::vector<std::size_t> triangles;
 };
 
+/// Triangles that meet at more than this angle [rad] (35 degrees) meet in a crease; at less, they stand for a smooth surface.
+inline constexpr double sharp = 0.61;
+
+class ThinPlaces;        // thin_places.h
+struct FoundThinPlaces;  // of one surface
+
 /// A closed surface of triangles, in one part or several, which bounds a volume: made by `make_surface`. Or one that is open
 /// where faces of a box cut it (`shape_of_facets`), which bounds a volume together with these: asked for places in the box.
 class TriangulatedSurface {
@@ -25,12 +33,21 @@ public:
 
     /// The distance from `x` to the surface [m], negative inside: exact to rounding, and so is its sign where the
     /// distance is above that. In time that grows with the logarithm of the number of triangles.
-    [[nodiscard]] double signed_distance(const Vec3& x) const;
+    [[nodiscard]] double signed_distance(const Vec3& x) const { return signed_distance(x, tree_.nearest(x)); }
+    /// The same of an `x` whose nearest place is known.
+    [[nodiscard]] double signed_distance(const Vec3& x, const NearestPlace& nearest) const;
     [[nodiscard]] Vec3 closest_point(const Vec3& x) const { return tree_.nearest(x).point; }
     /// How far it is from the place nearest to `x`, along the normal there, inwards or outwards, to another part of the
-    /// surface [m], to a hundredth; infinite if not within `most`, and outwards of an open one. By steps as long as there is room [Hart 1996, "Sphere
-    /// tracing"].
+    /// surface [m], to a hundredth; infinite if not within `most`, and outwards of an open one.
     [[nodiscard]] double across(const Vec3& x, bool inside, double most) const;
+    /// How far it is from `x` in it, along the outward normal there or against it, to another part of the surface that is
+    /// parallel to within 20 degrees, or through the body to such a face of the box [m]; infinite if none is within `most`,
+    /// and outwards of an open one.
+    [[nodiscard]] double width_between(const Vec3& x, const Vec3& normal, bool inside, double most) const;
+    /// The radius by which it bends from a triangle to its neighbours [m], over edges that are not `sharp`; infinite if flat.
+    [[nodiscard]] double radius_at(std::size_t triangle) const;
+    /// Its thin places, for sizes between these [m]; found once, for all that share the surface.
+    [[nodiscard]] std::shared_ptr<const ThinPlaces> thin_places(double least, double most) const;
     /// The radius of the ball that touches it at the place nearest to `x`, from inside or outside, with none of its points
     /// within [m], at most `most`: by a ball that shrinks [Ma, Bae, Choi 2012, "3D medial axis point approximation using
     /// nearest neighbors and the normal field"].
@@ -52,6 +69,15 @@ private:
     /// It is open; what it bounds has this volume [m^3] and reaches the faces of the box, given as the points are, on which
     /// it is open, or in whose middles it is.
     void ends_on(const Bounds& box, unsigned open, double volume);
+    /// What a way along a direction comes to, which is told if it is longer than `least`.
+    struct Opposite {
+        double way = std::numeric_limits<double>::infinity();  // [m]
+        Vec3 normal;                                            // outwards there
+        bool on_box = false;                                    // a face of the box
+    };
+    [[nodiscard]] Opposite opposite(const Vec3& from, const Vec3& direction, bool inside, double least, double most) const;
+    [[nodiscard]] bool is_at_edge(const Vec3& middle, const Vec3& normal, const Opposite& other, bool inside, double most) const;
+    [[nodiscard]] Opposite through_face(const Vec3& from, const Vec3& direction) const;
     /// A normal there, as long as it comes.
     [[nodiscard]] const Vec3& outwards(const NearestPlace& at) const;
     static TriangulatedSurface joined(std::vector<Vec3> points, std::vector<std::array<int, 3>> triangles,
@@ -66,6 +92,7 @@ private:
     unsigned reached_ = 0;
     Vec3 centroid_;
     Extent extent_;
+    std::shared_ptr<FoundThinPlaces> thin_;
 };
 
 /// The surface of these triangles, by the numbers of their corners among `points` [m], counter-clockwise seen from

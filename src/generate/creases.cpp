@@ -10,8 +10,6 @@ namespace kropla {
 
 namespace {
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
-
 std::vector<std::pair<Vec3, Vec3>> crease_segments(const Sheet& sheet) {
     std::vector<std::pair<Vec3, Vec3>> segments;
     for (Half h : sheet.origin.indices())

@@ -9,12 +9,8 @@
 
 namespace kropla {
 
-/// Edges at which a surface's triangles meet at more than this angle [rad] (35 degrees) are creases, and stay where they
-/// are; flatter ones are taken for those of triangles on a smooth surface. A crease that bends so sharply has a corner.
-inline constexpr double sharp = 0.61;
-
-/// The triangles of a surface as a sheet, with its creases, and what holds its vertices: a corner is where other than two
-/// creases meet, or two in a bend.
+/// The triangles of a surface as a sheet, with its creases, which stay where they are, and what holds its vertices: a corner
+/// is where other than two creases meet, or two in a bend as `sharp` as they are.
 [[nodiscard]] Sheet sheet_of(const TriangulatedSurface& surface);
 
 /// Tells what holds the vertices, from the creases.

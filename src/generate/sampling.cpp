@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -34,8 +35,9 @@ std::int64_t cell_number(double x, double width) { return static_cast<std::int64
 
 void PointGrid::insert(const Vec3& x, double spacing) {
     const int level = std::ilogb(spacing);
-    lowest_level_ = entries_.empty() ? level : std::min(lowest_level_, level);
-    highest_level_ = entries_.empty() ? level : std::max(highest_level_, level);
+    auto at = std::ranges::find_if(levels_, [&](const Level& l) { return l.level <= level; });
+    if (at == levels_.end() || at->level != level) at = levels_.insert(at, {level, {}});
+    at->held.take_in(x);
     entries_.push_back({x, level, -1});
     if (entries_.size() <= slots_.size()) return file(static_cast<std::int32_t>(entries_.size() - 1));
     slots_.assign(2 * slots_.size(), -1);
@@ -54,20 +56,20 @@ void PointGrid::file(std::int32_t entry) {
 template <class Visit>
 bool PointGrid::visit_within(const Vec3& x, double radius, double least, double greatest, const Visit& visit) const {
     if (!(radius > 0)) return false;
-    const int lowest = least > 0 ? std::max(lowest_level_, std::ilogb(least)) : lowest_level_;
-    const int highest = std::min(highest_level_, std::ilogb(greatest));
-    for (int level = highest; level >= lowest; --level)
-        if (visit_within_at(level, x, radius, visit)) return true;
-    return false;
+    const int lowest = least > 0 ? std::ilogb(least) : std::numeric_limits<int>::min(), highest = std::ilogb(greatest);
+    return std::ranges::any_of(levels_, [&](const Level& at) {
+        return at.level >= lowest && at.level <= highest && visit_within_at(at, x, radius, visit);
+    });
 }
 
 template <class Visit>
-bool PointGrid::visit_within_at(int level, const Vec3& x, double radius, const Visit& visit) const {
+bool PointGrid::visit_within_at(const Level& at, const Vec3& x, double radius, const Visit& visit) const {
+    const int level = at.level;
     const double width = cell_width(level), squared = radius * radius;
     std::array<std::int64_t, 3> first = {}, last = {};
     for (int axis = 0; axis < 3; ++axis) {
-        first[static_cast<std::size_t>(axis)] = cell_number(x[axis] - radius, width);
-        last[static_cast<std::size_t>(axis)] = cell_number(x[axis] + radius, width);
+        first[static_cast<std::size_t>(axis)] = cell_number(std::max(x[axis] - radius, at.held.min[axis]), width);
+        last[static_cast<std::size_t>(axis)] = cell_number(std::min(x[axis] + radius, at.held.max[axis]), width);
     }
     const auto squared_gap = [&](int axis, std::int64_t cell) {
         constexpr double rounding = 1e-9;  // [-] of the width

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include <kropla/base/watch.h>
 #include <kropla/domain/domain.h>
+#include "mesh/box_tree.h"
 
 #include <array>
 #include <cstdint>
@@ -34,12 +35,17 @@ private:
     /// Until `visit(place)` says that it is enough; did it?
     template <class Visit>
     bool visit_within(const Vec3& x, double radius, double least, double greatest, const Visit& visit) const;
+    /// The points of one level, and the box that just holds them.
+    struct Level {
+        int level;
+        Extent held;
+    };
     template <class Visit>
-    bool visit_within_at(int level, const Vec3& x, double radius, const Visit& visit) const;
+    bool visit_within_at(const Level& at, const Vec3& x, double radius, const Visit& visit) const;
 
     std::vector<Entry> entries_;
     std::vector<std::int32_t> slots_ = std::vector<std::int32_t>(64, -1);
-    int lowest_level_ = 0, highest_level_ = -1;
+    std::vector<Level> levels_;  // highest first
 };
 
 /// What a maximal sample obeys: a point x stands only where clearance(x) >= 0, and is refused if another

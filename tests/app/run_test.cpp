@@ -224,13 +224,15 @@ TEST(Run, EndsWithThreeWhereTheFloorsCannotBeKept) {
 // In a gap of 0.26 of an edge flat cells have R/r 7.
 TEST(Run, LeavesAReportIfTheInitialMeshCannotBeMade) {
     const TemporaryFolder folder;
-    // A plate a sixth as thick as an edge, where edges may not become shorter.
+    // A plate 0.3 times as thick as an edge, where edges may not become shorter, and cells have to be better than that.
     std::string text = replaced(landing_case(), "-0.838*t", "0");
     text = replaced(replaced(text, "\"sphere\"", "\"slab\""), "centre = [0.0, 0.0, 0.002]", "min = [-1e-3, -1e-3, 0.002]");
-    write(folder.path / "plate.toml", replaced(text, "radius = 0.001", "max = [1e-3, 1e-3, 0.0021]"));
+    write(folder.path / "plate.toml", replaced(text, "radius = 0.001", "max = [1e-3, 1e-3, 0.00218]"));
     const Outcome it = kropla_program(folder, "run plate.toml --out d");
     EXPECT_EQ(it.code, 3) << it.err;
     expect_one_line(it.err, "the initial mesh cannot be made: at t = 0 s ");
+    EXPECT_NE(it.err.find("0.00018 m thick at "), std::string::npos) << it.err;
+    EXPECT_NE(it.err.find("0.3 of size.least = 0.0006 m: too thin for the mesh; at most 0.00027 m would do"), std::string::npos) << it.err;
     const std::string page = contents(folder.path / "d/report.html");
     EXPECT_NE(page.find("Ended early: the initial mesh cannot be made: at t = 0 s "), std::string::npos);
     EXPECT_NE(page.find("Where it ended"), std::string::npos);

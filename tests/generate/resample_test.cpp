@@ -8,9 +8,11 @@
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/topology.h>
 #include <kropla/mesh/verify.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -170,4 +172,28 @@ TEST(GenerateMesh, TakesAnyClosedSurface) {
     expect_mesh(domain_with(shape_of(both), 0.5), 27 - 2.744 + 0.216);
     const Shape ring = shape_of(torus(1, 0.4, 40, 20), {0.2, 0.1, -0.3}, turned);
     expect_mesh(domain_with(ring, 0.25), enclosed_volume(resampled(ring, {0.25}), ring.centre));
+}
+
+TEST(GenerateMesh, TakesThinBodiesAndSlots) {
+    const auto with_room_for = [](Domain domain) {
+        domain.size.least = 0.02;
+        return domain;
+    };
+    const Shape plate = shape_of(box_of_triangles({-1, -1, -0.05}, {1, 1, 0.05}), {}, rotation_about({1, 2, 0}, 0.5));
+    expect_mesh(with_room_for(domain_with(plate, 0.5)), 0.4);
+    const Triangles slot = together(box_of_triangles({-1, -1, -1}, {-0.05, 1, 1}), box_of_triangles({0.05, -1, -1}, {1, 1, 1}));
+    expect_mesh(with_room_for(domain_with(shape_of(slot), 0.5)), 2 * 0.95 * 4);
+    const Triangles bar = box_of_triangles({-0.05, -0.05, -1}, {0.05, 0.05, 1});
+    expect_mesh(with_room_for(domain_with(shape_of(bar), 0.5)), 0.02);
+}
+
+// Of four corners of a cube the Delaunay mesh may make a flat cell, and of those beside it too.
+TEST(InitialMesh, HasNoFlatCellsInSquareBars) {
+    for (const double half_width : {0.1, 0.14, 0.17, 0.2}) {
+        const Shape bar = shape_of(box_of_triangles({-half_width, -half_width, -1}, {half_width, half_width, 1}));
+        const Mesh mesh = initial_mesh(domain_with(bar, 0.4));
+        double worst = 0;
+        for (Tet t : mesh.tets.indices()) worst = std::max(worst, alive(mesh, t) ? aspect_ratio(mesh, t) : 0);
+        EXPECT_LE(worst, 10) << half_width;
+    }
 }

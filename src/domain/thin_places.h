@@ -1,0 +1,50 @@
+#pragma once
+
+#include "mesh/box_tree.h"
+#include "mesh/triangle.h"
+
+#include <vector>
+
+namespace kropla {
+
+class TriangulatedSurface;
+
+/// Where a surface of triangles faces another part of itself nearby that is nearly parallel to it: across what it bounds, as
+/// at a plate, a fin or a wire, or across what it leaves open, as in a slot. And the sizes that triangles have to have there.
+class ThinPlaces {
+public:
+    /// Sizes from `least` to `most` [m]. Each triangle of the surface is looked at, and its parts as far as they differ.
+    ThinPlaces(const TriangulatedSurface& surface, double least, double most);
+
+    [[nodiscard]] bool any() const { return !groups_.empty(); }
+    /// The target size at `x` [m]: where the surface is flat, `gap_share` of the width; where it is round, its radius, but not
+    /// below `neck_share` of the width; from there it rises by `growth` per metre.
+    [[nodiscard]] double size(const Vec3& x, double growth) const;
+
+    struct Width {
+        double across;  // [m], infinite if there is nothing near
+        bool inside;    // across the body; else across what is open
+        Vec3 at;
+    };
+    [[nodiscard]] const Width& narrowest() const { return narrowest_; }
+
+private:
+    /// A part of a triangle, and the size there [m], below most.
+    struct Place {
+        Corners part;
+        double size;
+    };
+    /// Places of about the same size, so that one that is near rules out those that are farther.
+    struct Group {
+        double smallest;  // [m]
+        std::vector<Place> places;
+        BoxTree tree;
+    };
+    struct Look;
+
+    double most_;
+    std::vector<Group> groups_;
+    Width narrowest_;
+};
+
+}  // namespace kropla

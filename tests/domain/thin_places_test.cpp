@@ -1,0 +1,119 @@
+// Sizes that fall where a body, or what it leaves open, is thin.
+#include "domain/thin_places.h"
+
+#include <kropla/base/error.h>
+#include <kropla/domain/domain.h>
+#include "domain/surfaces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace kropla;
+
+namespace {
+
+/// A polygon in the plane of x and y, counter-clockwise and seen whole from its first corner, drawn along z.
+Triangles prism_on(const std::vector<Vec3>& polygon, double half_length) {
+    Triangles prism;
+    const int n = static_cast<int>(polygon.size());
+    for (const double z : {-half_length, half_length})
+        for (const Vec3& corner : polygon) prism.points.push_back({corner.x, corner.y, z});
+    for (int i = 0; i < n; ++i) {
+        const int j = (i + 1) % n;
+        prism.triangles.insert(prism.triangles.end(), {{i, j, n + j}, {i, n + j, n + i}});
+        if (i > 0 && j > 0) prism.triangles.insert(prism.triangles.end(), {{0, j, i}, {n, n + i, n + j}});
+    }
+    return prism;
+}
+
+std::vector<Vec3> regular_polygon(int corners, double radius) {
+    std::vector<Vec3> polygon;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / corners;
+        polygon.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+    }
+    return polygon;
+}
+
+constexpr double least = 0.01, most = 0.5, growth = 0.2;
+
+ThinPlaces thin_places(const Triangles& t) { return {surface_of(t), least, most}; }
+
+Domain with_body(const Triangles& t, double size, double least_size) {
+    Domain domain{{{-4, -4, -4}, {4, 4, 4}}, {}, {size, 0.3, 2, least_size}};
+    domain.bodies.push_back({"plate", shape_within(t.points, t.triangles)});
+    return domain;
+}
+
+}  // namespace
+
+TEST(ThinPlaces, APlateHasACellAcrossWhereverItIs) {
+    const double thickness = 0.06;
+    const ThinPlaces thin = thin_places(box_of_triangles({-1, -1, -thickness / 2}, {1, 1, thickness / 2}));
+    ASSERT_TRUE(thin.any());
+    for (const Vec3& x : {Vec3{0, 0, 0.03}, Vec3{0.9, -0.9, -0.03}, Vec3{-0.99, 0.2, 0.03}})
+        EXPECT_NEAR(thin.size(x, growth), gap_share * thickness, 0.02 * gap_share * thickness);
+    EXPECT_NEAR(thin.size({1.5, 0, 0.03}, growth), gap_share * thickness + growth * 0.5, 0.02);
+    EXPECT_EQ(thin.size({9, 0, 0}, growth), most);
+    EXPECT_NEAR(thin.narrowest().across, thickness, 0.01 * thickness);
+    EXPECT_TRUE(thin.narrowest().inside);
+}
+
+TEST(ThinPlaces, AThickBodyHasNone) {
+    EXPECT_FALSE(thin_places(box_of_triangles({-1, -1, -1}, {1, 1, 1})).any());
+    EXPECT_FALSE(thin_places(sphere_of_triangles(4)).any());
+}
+
+TEST(ThinPlaces, ARodHasItsRadiusAndABarACellAcross) {
+    const double radius = 0.08;
+    const ThinPlaces rod = thin_places(prism_on(regular_polygon(24, radius), 1));
+    EXPECT_NEAR(rod.size({radius, 0, 0}, growth), radius, 0.1 * radius);
+    const ThinPlaces bar = thin_places(prism_on(regular_polygon(4, radius), 1));
+    EXPECT_NEAR(bar.size({radius, 0, 0}, growth), gap_share * std::numbers::sqrt2 * radius, 0.05 * radius);
+}
+
+TEST(ThinPlaces, ASlotIsOpenAndThin) {
+    const double width = 0.1;
+    const Triangles two = together(box_of_triangles({-1, -1, -1}, {-width / 2, 1, 1}), box_of_triangles({width / 2, -1, -1}, {1, 1, 1}));
+    const ThinPlaces slot = thin_places(two);
+    EXPECT_NEAR(slot.size({-width / 2, 0, 0}, growth), gap_share * width, 0.02 * width);
+    EXPECT_EQ(slot.size({-1, 0, 0}, growth), std::min(most, gap_share * width + growth * (1 - width / 2)));
+    EXPECT_FALSE(slot.narrowest().inside);
+}
+
+TEST(ThinPlaces, AnEdgeHoweverSharpIsNone) {
+    const double slope = std::tan(10 * std::numbers::pi / 180);  // in all; nearer to it than `most` it does not count
+    const ThinPlaces blade = thin_places(prism_on({{-1, 0, 0}, {1, -slope, 0}, {1, slope, 0}}, 1));
+    EXPECT_GT(blade.size({-1, 0, 0}, growth), 0.8 * gap_share * most * 2 * slope);
+    const ThinPlaces notch = thin_places(prism_on({{0, 0, 0}, {-0.1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0.1, 1, 0}}, 1));
+    EXPECT_GT(notch.narrowest().across, 0.05);
+    const double blunt = 0.02;
+    const ThinPlaces cut_off =
+        thin_places(prism_on({{-1, -blunt, 0}, {1, -slope, 0}, {1, slope, 0}, {-1, blunt, 0}}, 1));
+    EXPECT_LT(cut_off.size({-1, 0, 0}, growth), 2 * gap_share * 2 * blunt);
+}
+
+TEST(ThinPlaces, ABodyTurnsWithItsSizes) {
+    Domain domain = with_body(box_of_triangles({-1, -1, -0.03}, {1, 1, 0.03}), 0.5, 0.01);
+    domain.bodies[0].motion = [](double t) { return Pose{{t, 0, 0}, rotation_about({0, 1, 0}, std::numbers::pi / 2 * t)}; };
+    const Snapshot at = snapshot(domain, 1);  // it stands across x = 1
+    EXPECT_NEAR(surface_size(at, 0, {1.03, 0.5, 0.5}), gap_share * 0.06, 0.002);
+    EXPECT_NEAR(target_size(at, {1.23, 0.5, 0.5}), gap_share * 0.06 + 0.3 * 0.2, 0.002);
+}
+
+TEST(ThinPlaces, TooThinForTheLeastSizeIsSaidBefore) {
+    const Domain domain = with_body(box_of_triangles({-1, -1, -0.01}, {1, 1, 0.01}), 0.5, 0.1);
+    try {
+        check_placement(domain, 0, least_gap_in_sizes);
+        FAIL() << "0.02 m thick, and sizes of at least 0.1 m";
+    } catch (const DomainError& error) {
+        const std::string said = error.what();
+        EXPECT_NE(said.find("body \"plate\" is 0.02"), std::string::npos) << said;
+        EXPECT_NE(said.find("too thin for size.least = 0.1 m; at most 0.0"), std::string::npos) << said;
+    }
+    Domain finer = domain;
+    finer.size.least = 0.05;
+    EXPECT_NO_THROW(check_placement(finer, 0, least_gap_in_sizes));
+}
