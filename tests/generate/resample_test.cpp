@@ -189,8 +189,9 @@ TEST(GenerateMesh, TakesThinBodiesAndSlots) {
 
 // Of four corners of a cube the Delaunay mesh may make a flat cell, and of those beside it too.
 TEST(InitialMesh, HasNoFlatCellsInSquareBars) {
-    for (const double half_width : {0.1, 0.14, 0.17, 0.2}) {
-        const Shape bar = shape_of(box_of_triangles({-half_width, -half_width, -1}, {half_width, half_width, 1}));
+    for (const auto [half_width, half_length] : {std::array{0.05, 0.8}, {0.17, 1.0}, {0.25, 1.0}}) {
+        const Vec3 half = {half_width, half_width, half_length};
+        const Shape bar = shape_of(box_of_triangles(-half, half));
         const Mesh mesh = initial_mesh(domain_with(bar, 0.4));
         double worst = 0;
         for (Tet t : mesh.tets.indices()) worst = std::max(worst, alive(mesh, t) ? aspect_ratio(mesh, t) : 0);
