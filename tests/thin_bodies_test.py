@@ -128,10 +128,10 @@ def fault_of(program, kind, rng):
 def main():
     seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
     count = int(sys.argv[3]) if len(sys.argv) > 3 else 5
-    faults = 0
+    program, faults = pathlib.Path(sys.argv[1]).resolve(), 0
     for i in range(count):
         kind = ("plate", "bar", "fin", "slot", "tube")[i % 5]
-        if fault := fault_of(sys.argv[1], kind, random.Random(f"{seed} {i}")):
+        if fault := fault_of(program, kind, random.Random(f"{seed} {i}")):
             print(f"seed {seed}, number {i}, {kind}: {fault}")
             faults += 1
     print(f"{count - faults} of {count} thin bodies, seed {seed}")
