@@ -7,6 +7,7 @@
 #include <kropla/mesh/topology.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace kropla {
@@ -93,14 +94,27 @@ void grade(const TriangulatedSurface& surface, std::vector<double>& size) {
     }
 }
 
-/// Sizes on the surface of a body, of at most `most` [m], that fall in its necks and notches down to `least`; none where
-/// there is none.
+/// Per point of a surface, the least radius by which it bends there [m].
+std::vector<double> radii_of(const TriangulatedSurface& surface) {
+    std::vector<double> radii(surface.points().size(), std::numeric_limits<double>::infinity());
+    for (std::size_t t = 0; t < surface.triangles().size(); ++t) {
+        const double radius = surface.radius_at(t);
+        for (int corner : surface.triangles()[t]) radii[as_size(corner)] = std::min(radii[as_size(corner)], radius);
+    }
+    return radii;
+}
+
+/// Sizes on the surface of a body, of at most `most` [m], that fall in its necks and notches down to `least`, less where it is
+/// flat, as a plate that goes through faces of the box; none where there is none.
 LocalSize size_in_necks(const Shape& shape, double least, double most) {
+    constexpr double flat = 100;  // [widths] radius of what is
     const TriangulatedSurface& surface = *shape.surface;
+    const std::vector<double> radii = radii_of(surface);
     std::vector<double> size(surface.points().size());
     for_all(size.size(), [&](std::size_t i) {
         const Vec3& x = surface.points()[i];
-        const double asked = std::min(neck_share * surface.across(x, true, most / neck_share),
+        const double neck = surface.across(x, true, most / neck_share);
+        const double asked = std::min((radii[i] > flat * neck ? gap_share : neck_share) * neck,
                                       gap_share * surface.across(x, false, most / gap_share));
         size[i] = std::clamp(asked, least, most);
     });

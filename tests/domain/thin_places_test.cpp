@@ -2,8 +2,10 @@
 #include "domain/thin_places.h"
 
 #include <kropla/base/error.h>
-#include <kropla/domain/domain.h>
+#include "domain/body_surface.h"
+#include <kropla/domain/solids.h>
 #include "domain/surfaces.h"
+#include <kropla/step/initial_mesh.h>
 
 #include <gtest/gtest.h>
 
@@ -101,6 +103,16 @@ TEST(ThinPlaces, ABodyTurnsWithItsSizes) {
     const Snapshot at = snapshot(domain, 1);  // it stands across x = 1
     EXPECT_NEAR(surface_size(at, 0, {1.03, 0.5, 0.5}), gap_share * 0.06, 0.002);
     EXPECT_NEAR(target_size(at, {1.23, 0.5, 0.5}), gap_share * 0.06 + 0.3 * 0.2, 0.002);
+}
+
+TEST(ThinPlaces, APlateThroughWallsKeepsItsSizesAsItMoves) {
+    Domain domain{{{-1, -1, -1}, {1, 1, 1}}, {}, {0.4, 0.4, 0.8}};
+    domain.bodies.push_back({"plate", slab(domain.box, {-2, -2, -0.05}, {2, 2, 0.05})});
+    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, t}, {}}; };
+    domain.bodies[0] = cut_body(domain.bodies[0]);
+    const Mesh mesh = initial_mesh(domain);
+    const Snapshot at = snapshot(domain, 0, deforming_surfaces(domain, mesh), mesh.position, false);
+    EXPECT_NEAR(surface_size(at, 0, {0, 0, 0.05}), gap_share * 0.1, 0.01);
 }
 
 TEST(ThinPlaces, TooThinForTheLeastSizeIsSaidBefore) {
