@@ -56,7 +56,8 @@ double TriangulatedSurface::width_between(const Vec3& x, const Vec3& normal, boo
     const Vec3 direction = inside ? -normal : normal;
     const Vec3 middle = x + most / 2 * direction;  // of a ball that is free of the surface, mostly
     const bool in_box = !inside || !(extent_.squared_distance(x + most * direction) > 0);
-    if (in_box && std::sqrt(tree_.nearest(middle).squared_distance) > most / 2 * (1 - rounding))
+    const NearestPlace touching{x, most / 2 * (most / 2)};
+    if (in_box && std::sqrt(tree_.nearest(middle, touching).squared_distance) > most / 2 * (1 - rounding))
         return std::numeric_limits<double>::infinity();
     const Opposite other = opposite(x, direction, inside, least * most, most);
     const bool counts = -dot(other.normal, normal) > parallel && !is_at_edge(x + other.way / 2 * direction, normal, other, inside, most);

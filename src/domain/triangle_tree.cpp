@@ -44,10 +44,10 @@ double reach_of(const Extent& box, const Vec3& direction) {
 
 // Nothing behind the plane through the nearest place so far, across the way to it, is nearer: of a body that bulges that
 // is nearly all, whose boxes alone would not tell.
-NearestPlace TriangleTree::nearest(const Vec3& x) const {
-    NearestPlace found{x};
-    Vec3 back;                          // from the nearest place to x
-    double behind = -Extent::infinite;  // along it, that place
+NearestPlace TriangleTree::nearest(const Vec3& x, const NearestPlace& known) const {
+    NearestPlace found = known;
+    Vec3 back = x - known.point;  // from the nearest place to x
+    double behind = known.squared_distance < Extent::infinite ? dot(back, known.point) : -Extent::infinite;  // along it, that place
     boxes_.least([&](const Extent& box) { return reach_of(box, back) <= behind ? Extent::infinite : box.squared_distance(x); },
                  [&](std::size_t triangle) {
                      const Corners c = corners(triangle);
@@ -60,7 +60,8 @@ NearestPlace TriangleTree::nearest(const Vec3& x) const {
                          behind = dot(back, there.point);
                      }
                      return away;
-                 });
+                 },
+                 known.squared_distance);
     return found;
 }
 

@@ -29,7 +29,9 @@ public:
     [[nodiscard]] Corners corners(std::size_t triangle) const;
     [[nodiscard]] const BoxTree& boxes() const { return boxes_; }  ///< of the triangles, by their numbers
 
-    [[nodiscard]] NearestPlace nearest(const Vec3& x) const;
+    [[nodiscard]] NearestPlace nearest(const Vec3& x) const { return nearest(x, NearestPlace{x}); }
+    /// The same, or `known`, a place on them, if none is nearer.
+    [[nodiscard]] NearestPlace nearest(const Vec3& x, const NearestPlace& known) const;
     /// How far they reach along `direction`, from the origin, in its lengths.
     [[nodiscard]] double reach_along(const Vec3& direction) const;
 
