@@ -70,11 +70,15 @@ Snapshot without_tree(const Domain& domain, double t) {
     return at;
 }
 
+std::shared_ptr<const ThinPlaces> thin_places_of(const Snapshot& at, std::size_t body) {
+    const double most = surface_size(at, body);
+    return at.shapes[body].surface->thin_places(std::min(least_size(at.size), most), most);
+}
+
 void see_thin_places(Snapshot& at, std::size_t body) {
     const Shape& shape = at.shapes[body];
     if (!shape.surface) return;
-    const double most = surface_size(at, body);
-    const auto thin = shape.surface->thin_places(std::min(least_size(at.size), most), most);
+    const auto thin = thin_places_of(at, body);
     if (!thin->any()) return;
     const double growth = at.size.growth;
     at.local_slope = std::max(at.local_slope, growth);

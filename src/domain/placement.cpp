@@ -4,7 +4,6 @@
 #include "domain/approach.h"
 #include <kropla/domain/domain.h>
 #include "domain/thin_places.h"
-#include "domain/triangulated_surface.h"
 
 #include <algorithm>
 #include <cassert>
@@ -48,8 +47,8 @@ void lower_by_gap(SizeLimit& limit, const Domain& domain, const Approach& approa
 void check_thickness(const Domain& domain, const Snapshot& at, double least_width) {
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
         if (!at.shapes[body].surface) continue;
-        const double most = surface_size(at, body), least = std::min(least_size(at.size), most);
-        const ThinPlaces::Width narrowest = at.shapes[body].surface->thin_places(least, most)->narrowest();
+        const double least = std::min(least_size(at.size), surface_size(at, body));
+        const ThinPlaces::Width narrowest = thin_places_of(at, body)->narrowest();
         if (narrowest.across >= least_width * least) continue;
         const Vec3 place = at.shapes[body].centre + rotated(at.shapes[body].orientation, narrowest.at);
         throw DomainError(named(domain.bodies[body]) + (narrowest.inside ? " is " : " leaves open ") + metres(narrowest.across) +

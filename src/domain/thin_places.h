@@ -3,11 +3,14 @@
 #include "mesh/box_tree.h"
 #include "mesh/triangle.h"
 
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace kropla {
 
-class TriangulatedSurface;
+struct Snapshot;            // domain.h
+class TriangulatedSurface;  // triangulated_surface.h
 
 /// Where a surface of triangles faces another part of itself nearby that is nearly parallel to it: across what it bounds, as
 /// at a plate, a fin or a wire, or across what it leaves open, as in a slot. And the sizes that triangles have to have there.
@@ -46,5 +49,8 @@ private:
     std::vector<Group> groups_;
     Width narrowest_;
 };
+
+/// Of a body that triangles bound, for the sizes that it may have.
+[[nodiscard]] std::shared_ptr<const ThinPlaces> thin_places_of(const Snapshot& at, std::size_t body);
 
 }  // namespace kropla
