@@ -1,5 +1,5 @@
 // kropla_raw_mesh SIZE OUT: the Delaunay mesh, before any improvement, of well-spaced points in a unit box with a sphere
-// of radius 0.25 as interface, edges SIZE everywhere (0.022: 600,000 tets), for `kropla improve` to work on.
+// of radius 0.25 as interface, edges SIZE everywhere (0.0256: 600,000 tets), for `kropla improve` to work on.
 
 #include <kropla/generate/generate.h>
 #include <kropla/io/mesh_file.h>

@@ -17,12 +17,11 @@ SEES = {
     "transfer": ["mesh"],
     "step": ["adapt", "transfer"],
     "simulate": ["mesh", "transfer"],
-    "welding": ["simulate", "domain"],
     "io": ["mesh", "simulate"],
     "report": ["io"],
     "motion": ["domain", "simulate"],
     "case": ["motion", "step", "io"],
-    "app": ["base", "mesh", "domain", "generate", "adapt", "transfer", "step", "simulate", "welding", "io", "report", "case"],
+    "app": ["base", "mesh", "domain", "generate", "adapt", "transfer", "step", "simulate", "io", "report", "case"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"|<kropla/)([^">]+)[">]')
 HEADERS = re.compile(r"list\(APPEND KROPLA_\w+_HEADERS([^)]*)\)")

@@ -93,7 +93,7 @@ private:
 /// motions say. Throws std::logic_error if that is not after the step's start.
 [[nodiscard]] MovedAttempt move_bodies(Attempt&& attempt, double end, std::span<const BodyPlace> places = {},
                                        std::span<const BodyCourse> courses = {});
-/// Ends the attempt; if the mesh stopped it, the next one will be remeshed where it got stuck.
+/// Ends the attempt; if a tet stopped it, the next one will be remeshed where it got stuck.
 void refuse(MovedAttempt&& attempt);
 /// Throws std::logic_error if the attempt is to be refused.
 [[nodiscard]] RemeshedAttempt remesh(MovedAttempt&& attempt);

@@ -42,8 +42,8 @@ struct WeightedCentroid {
     double weight;
 };
 
-/// A motion of a zone's vertices, in one step: which take part, and where they go. Made by place_boundary or
-/// motion_of, with cells listed and target sizes found. Nothing in the mesh changes before `write_places`. To be used
+/// A motion of a zone's vertices, in one step: which take part, and where they go. Made by
+/// `movable`, with cells listed and target sizes found. Nothing in the mesh changes before `write_places`. To be used
 /// again and again, as its arrays are as long as the mesh's; they hold something where the zone is.
 struct ZoneMotion {
     std::vector<Vertex> bodies;            // vertices that move with a body

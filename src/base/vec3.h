@@ -45,7 +45,7 @@ inline Vec3 normalised(const Vec3& a) { return a / norm(a); }
 inline double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
-/// Six times the signed volume of the tetrahedron (a, b, c, d), rounded; for its sign see orient3d.
+/// dot(u, cross(v, w)), rounded: six times the signed volume of a tetrahedron with these edges; for its sign see orient3d.
 template <class Number>
 constexpr Number determinant(const Vector3<Number>& u, const Vector3<Number>& v, const Vector3<Number>& w) {
     return dot(u, cross(v, w));

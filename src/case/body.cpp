@@ -200,6 +200,15 @@ void take_body(Case& given, Body body, WrittenBody written) {
     given.written_bodies.push_back(std::move(written));
 }
 
+/// `whose` says which bodies stand at t = 0 where they are.
+void refuse_moved_at_start(const CaseTable& table, const Body& body, const std::string& whose) {
+    const Pose start = body.motion(0);
+    for (int axis = 0; axis < 3; ++axis)
+        if (start.displacement[axis] != 0)
+            table.table("motion").refuse(coordinates[as_size(axis)], "must be 0 at t = 0 for " + whose);
+    if (start.rotation.axes != Rotation{}.axes) table.table("motion").refuse("angle", "must be 0 at t = 0 for " + whose);
+}
+
 /// What bodies cannot have that reach through faces of the box.
 void refuse_with_cut(const CaseTable& table, const Case& given, const Body& body) {
     int face = 0;
@@ -207,12 +216,7 @@ void refuse_with_cut(const CaseTable& table, const Case& given, const Body& body
     const std::string through = fmt::format("; this one reaches through {}", wall_name(face));
     if (body.layer) table.refuse("layer", "stands on bodies that are wholly in the box" + through);
     if (given.free.back()) table.table("motion").refuse("kind", "\"free\" is for bodies that are wholly in the box" + through);
-    const Pose start = body.motion(0);
-    for (int axis = 0; axis < 3; ++axis)
-        if (start.displacement[axis] != 0)
-            table.table("motion").refuse(coordinates[as_size(axis)], "must be 0 at t = 0 for a body that is cut" + through);
-    if (start.rotation.axes != Rotation{}.axes)
-        table.table("motion").refuse("angle", "must be 0 at t = 0 for a body that is cut" + through);
+    refuse_moved_at_start(table, body, "a body that is cut" + through);
 }
 
 }  // namespace
@@ -253,6 +257,7 @@ std::vector<int> read_region_bodies(const CaseTable& file, const CaseMesh& mesh,
             table.refuse("region", fmt::format("is that of body[{}] already", same - regions.begin()));
         written.region = table.holds_text("region") ? toml_text(table.text("region")) : std::to_string(region);
         read_motion(table, given, body, written);
+        refuse_moved_at_start(table, body, "a body that is a region of the mesh, which stands where that has it");
         take_body(given, std::move(body), std::move(written));
         regions.push_back(region);
     }

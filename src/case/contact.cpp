@@ -2,6 +2,7 @@
 #include "case/contact.h"
 
 #include "domain/layer_room.h"
+#include <kropla/domain/words.h>
 
 #include <fmt/format.h>
 
@@ -46,6 +47,11 @@ void read_contact(const CaseTable& file, Case& given) {
     if (!file.has("contact")) return;
     if (std::ranges::none_of(given.free, [](const auto& free) { return free.has_value(); }))
         file.refuse("contact", "needs a body with motion.kind = \"free\": contacts act on no other");
+    for (std::size_t body = 0; body < given.domain.bodies.size(); ++body)
+        if (given.domain.bodies[body].shape.surface)
+            file.refuse("contact", fmt::format("is known between spheres and ellipsoids, and with faces of the box; {} is bounded by "
+                                               "triangles, or reaches through a face", named(given.domain.bodies[body])));
+    if (given.domain.walls) file.refuse("contact", "is known with faces of the box alone; domain.mesh has other walls too");
     const CaseTable table = file.table("contact");
     table.allow({"lubrication", "restitution", "gap"});
     ContactOptions options{.gap = usual_gap(given), .reach = reach_in_sizes * given.domain.size.surface};

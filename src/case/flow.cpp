@@ -27,10 +27,13 @@ FlowRegion read_region(NotedTable table, const Case& given, std::size_t region, 
     if (!read.density.constant() && read.density != given.heat->regions[region].material.density)
         table.table().refuse("density", fmt::format("depends on T, so heat.region.{}.density must be the same",
                                                     region_name(given.domain, region)));
+    const bool has_liquids = std::ranges::any_of(given.liquid, [](int is_liquid) { return is_liquid != 0; });
+    if (!read.density.constant() && has_liquids)
+        table.table().refuse("density", "must be a number in a case with liquid bodies, everywhere: none expands there yet");
     if (!read.density.constant() && !given.species.empty())
         table.table().refuse("density", "must be a number in a case with [[species]]: what expands does not carry them yet");
     read.viscosity = read_material(table, "viscosity", given, region);
-    initial = table.vector("initial", "[u, v, w] [m/s]");
+    initial = table.vector("initial", "[u, v, w] [m/s]", Variables::place);
     read.force = table.vector("force", "[fx, fy, fz] [N/m^3]");
     return read;
 }

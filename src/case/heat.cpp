@@ -33,7 +33,7 @@ HeatExchange read_exchange(NotedTable& noted) {
 
 /// A distribution, and the whole of it.
 std::pair<Quantity, Quantity> flux_and_power(NotedTable& noted, std::string_view key) {
-    Quantity flux = noted.quantity(key), power = noted.quantity("power");
+    Quantity flux = noted.quantity(key), power = noted.quantity("power", Variables::time);
     const Constant* spread = flux.target<Constant>();
     if (power && spread != nullptr && spread->value == 0)
         noted.table().refuse_value(key, "must not be zero beside power, which is spread by it; leave it out to spread it evenly");
@@ -47,7 +47,7 @@ HeatStart read_start(NotedTable& table) {
         start.steady = true;
         return start;
     }
-    if (table.table().holds_text("initial")) return table.quantity("initial");
+    if (table.table().holds_text("initial")) return table.quantity("initial", Variables::place);
     return table.number("initial");
 }
 

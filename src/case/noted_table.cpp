@@ -22,18 +22,18 @@ Quantity quantity_of(const Formula& formula) {
 
 }  // namespace
 
-Quantity NotedTable::quantity(std::string_view key) {
+Quantity NotedTable::quantity(std::string_view key, Variables of) {
     if (!table_.has(key)) return {};
-    const Formula formula = table_.formula(key, Variables::time_and_place, probe_);
+    const Formula formula = table_.formula(key, of, probe_);
     written_.emplace_back(key, formula.written);
     return quantity_of(formula);
 }
 
-VectorQuantity NotedTable::vector(std::string_view key, std::string_view meaning) {
+VectorQuantity NotedTable::vector(std::string_view key, std::string_view meaning, Variables of) {
     VectorQuantity read;
     if (!table_.has(key)) return read;
     std::vector<std::string> words;
-    for (const Formula& formula : table_.formulas(key, 3, meaning, Variables::time_and_place)) {
+    for (const Formula& formula : table_.formulas(key, 3, meaning, of)) {
         read[words.size()] = quantity_of(formula);
         words.push_back(formula.written);
     }

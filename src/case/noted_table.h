@@ -1,6 +1,7 @@
 #pragma once
 
 #include "case/case.h"
+#include "case/expression.h"
 #include "case/property.h"
 #include "case/table.h"
 #include <kropla/simulate/flow.h>
@@ -24,11 +25,11 @@ public:
     [[nodiscard]] bool has(std::string_view key) const { return table_.has(key); }
     [[nodiscard]] const CaseTable& table() const { return table_; }
 
-    /// A number or an expression of t, x, y and z; empty if the key is not there.
-    Quantity quantity(std::string_view key);
+    /// A number or an expression of these; empty if the key is not there.
+    Quantity quantity(std::string_view key, Variables of = Variables::time_and_place);
     double number(std::string_view key);
     /// Three of them; empty if the key is not there. `meaning` names them in a refusal.
-    VectorQuantity vector(std::string_view key, std::string_view meaning);
+    VectorQuantity vector(std::string_view key, std::string_view meaning, Variables of = Variables::time_and_place);
     Property property(std::string_view key, double usual_temperature);
     void note(std::string_view key, std::string written) { written_.emplace_back(key, std::move(written)); }
 

@@ -65,6 +65,7 @@ Shape read_surface(const CaseTable& table, const Box& box, WrittenBody& written)
     for (const char* key : {"radius", "axes"})
         if (table.has(key)) table.refuse(key, "a surface has file = \"...\", and scale, instead");
     const std::string file = table.text("file");
+    if (file.empty()) table.refuse_value("file", "must name a file of triangles, STL or OBJ");
     const std::filesystem::path path = beside_case(table, file);
     const double scale = table.has("scale") ? table.length("scale") : 1.0;
     const Vec3 centre = table.place("centre");

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <string_view>
 
 namespace kropla {
 namespace {
@@ -17,7 +19,7 @@ SpeciesRegion read_region(NotedTable table) {
     SpeciesRegion region;
     if (!(table.table().number("diffusivity") > 0)) table.table().refuse_value("diffusivity", "must be positive");
     region.diffusivity = table.number("diffusivity");
-    if (table.table().holds_text("initial")) region.initial = table.quantity("initial");
+    if (table.table().holds_text("initial")) region.initial = table.quantity("initial", Variables::place);
     else region.initial = table.number("initial");
     region.source = table.quantity("source");
     return region;
@@ -46,13 +48,17 @@ HeatFace read_face(const CaseTable& faces, std::string_view key, const Vec3& pro
     return read;
 }
 
+/// Of arrays in frames and of columns, as is a species' name with `_within`.
+constexpr std::array<std::string_view, 10> names_of_frames = {"region", "aspect_ratio", "min_dihedral", "layer", "temperature",
+                                                              "energy", "velocity", "pressure", "pressure_mean", "density"};
+
 /// A name that can be that of a column and of an array, and is not taken.
 std::string read_name(const CaseTable& table, const Case& given) {
     const std::string name = table.text("name");
     const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
     if (name.empty() || !std::ranges::all_of(name, is_plain))
         table.refuse_value("name", "must be of letters, digits and underscores");
-    const bool taken = name == "temperature" || name == "energy" ||
+    const bool taken = std::ranges::find(names_of_frames, name) != names_of_frames.end() || name.ends_with("_within") ||
                        std::ranges::any_of(given.species, [&](const Species& other) { return other.name == name; });
     if (taken) table.refuse_value("name", "must be one that is not taken yet");
     return name;

@@ -49,6 +49,16 @@ void snap(Vec3& x, const Bounds& box) {
     }
 }
 
+bool touches_face(const Bounds& box, const Corners& triangle) {
+    return std::ranges::any_of(triangle, [&](const Vec3& x) {
+        for (int face = 0; face < box_faces; ++face)
+            if (x[face / 2] == plane_of(box, face)) return true;
+        return false;
+    });
+}
+
+Vec3 normal_of(const Corners& c) { return normalised(cross(c[1] - c[0], c[2] - c[0])); }
+
 /// Splits triangles along the plane of one face.
 class Splitting {
 public:
@@ -206,15 +216,17 @@ void check_upright(const Body& body, double t) {
     const CutSurface& cut = *body.shape.cut;
     for (std::size_t i = 0; i < cut.whole.triangles().size(); ++i) {
         const Corners c = cut.whole.tree().corners(i);
-        const Vec3 normal = normalised(cross(c[1] - c[0], c[2] - c[0]));
-        if (!is_in(cut.box, c)) continue;
+        if (!is_in(cut.box, c) || !touches_face(cut.box, c)) continue;
+        Corners moved;
+        std::ranges::transform(c, moved.begin(), [&](const Vec3& x) { return body.deformation(x, 0, t); });
+        const Vec3 before = normal_of(c), after = normal_of(moved);
         for (int face = 0; face < box_faces; ++face) {
             const int axis = face / 2;
             const double width = cut.box.max[axis] - cut.box.min[axis];
-            if (std::abs(normal[axis]) <= upright) continue;
-            for (const Vec3& x : c)
-                if (x[axis] == plane_of(cut.box, face) &&
-                    std::abs(body.deformation(x, 0, t)[axis] - x[axis]) > on_plane * width)
+            if (std::max(std::abs(before[axis]), std::abs(after[axis])) <= upright) continue;
+            for (std::size_t corner = 0; corner < c.size(); ++corner)
+                if (const Vec3& x = c[corner];
+                    x[axis] == plane_of(cut.box, face) && std::abs(moved[corner][axis] - x[axis]) > on_plane * width)
                     throw DomainError(named(body) + ": at t = " + time_words(t) + " its motion takes it through " +
                                       wall_name(face) + ", on which it does not stand upright at " + place_words(x) +
                                       ": a motion along that wall would do, or one with kind = \"field\"");

@@ -178,7 +178,7 @@ inline constexpr double least_gap_in_sizes = 0.25;
 
 /// Throws DomainError, saying what is in the way, where, the distance found and the size that would do for
 /// all bodies, if at time t a body is outside the box, or two bodies overlap, or size.surface is above
-/// `surface_limit`.
+/// `surface_limit`, or a body of triangles, or a slot in it, is too thin for size.least.
 void check_placement(const Domain& domain, double t, double least_gap);
 
 /// The thickness [m] of the largest layer that is not squeezed anywhere, at time t: a third of the least gap

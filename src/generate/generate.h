@@ -23,7 +23,7 @@ struct Triangulation {
 /// Throws Interrupted if the watch says so.
 [[nodiscard]] Triangulation triangulate(std::span<const Vec3> points, const Watch* watch = nullptr);
 
-/// A closed triangulated surface; triangles are counter-clockwise seen from outside.
+/// A triangulated surface, closed, or open at faces of the box that its body reaches through; triangles are counter-clockwise seen from outside.
 struct Surface {
     std::vector<Vec3> points;
     std::vector<std::array<int, 3>> triangles;
@@ -68,8 +68,8 @@ struct PointSet {
 /// faces of the box as patches, and the prism layers that bodies have: a body's outside before its inside,
 /// tets ending at walls and shells. Where a triangle of a surface is not a facet, points that stand in its
 /// way are removed and surface points are added until it is.
-/// Throws DomainError as check_placement and check_layers, or if a surface cannot be made to conform; Interrupted if the
-/// watch says so.
+/// Throws DomainError as check_placement and check_layers, or if a layer is asked for at a surface of triangles, or a surface
+/// cannot be made to conform; Interrupted if the watch says so.
 [[nodiscard]] Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch = nullptr);
 
 /// The mesh without free slots, its vertices and cells numbered along a Hilbert curve, so that what is near in

@@ -253,7 +253,13 @@ Mesh generate_mesh(const Domain& domain, std::uint64_t seed, const Watch* watch)
     check_placement(domain, 0, least_gap_in_sizes);
     check_layers(domain, 0);
     const Snapshot at = snapshot(domain, 0);
-    Draft draft = relaxed_draft(at, seed, watch);
+    Draft draft = [&] {
+        try {
+            return relaxed_draft(at, seed, watch);
+        } catch (const BodyError& error) {
+            throw DomainError(named(domain.bodies[error.body]) + ": " + error.what());
+        }
+    }();
     for (int i = 0; i < recoveries; ++i) {
         heed(watch, "joining cells", static_cast<double>(i) / recoveries);
         const std::vector<FilledRoom> rooms = filled_rooms(draft, at, watch);

@@ -94,8 +94,12 @@ PointSet sample_points(const Snapshot& as_asked, std::uint64_t seed, const Watch
     std::size_t stage = 0;
     for (std::size_t body = 0; body < as_asked.shapes.size(); ++body) {
         heed(watch, "meshing surfaces", static_cast<double>(body) / static_cast<double>(as_asked.shapes.size()));
-        set.surfaces.push_back(
-            triangulate_surface(as_asked.shapes[body], size_on_surface(as_asked, body), stage_seed(seed, stage++), watch));
+        try {
+            set.surfaces.push_back(triangulate_surface(as_asked.shapes[body], size_on_surface(as_asked, body),
+                                                       stage_seed(seed, stage++), watch));
+        } catch (const DomainError& error) {
+            throw BodyError(body, error.what());
+        }
         set.first_of_surface.push_back(static_cast<int>(set.points.size()));
         append(set.points, set.surfaces.back().points);
     }

@@ -100,7 +100,6 @@ Vec3 drawn_to(const Sheet& sheet, Vertex v) {
 
 /// Would all triangles of the vertex stay well within a right angle of how they stand?
 bool may_move(const Sheet& sheet, Vertex v, const Vec3& to) {
-    constexpr double most_turned = 0.5;  // the cosine
     bool may = true;
     for_each_leaving(sheet, v, [&](Half h) {
         const Vec3 old = normal_area(sheet, h), now = normal_area(sheet, h, v, to);
@@ -262,6 +261,22 @@ Surface resampled(const Shape& shape, const SurfaceSize& asked, const Watch* wat
     return shape.cut ? surface_in(shape.cut->box, surface) : surface;
 }
 
+namespace {
+
+/// Where the line in which it ends on a face is shorter than its triangles, a triangle lies on the face.
+void refuse_closed_on_faces(const Surface& wall, const CutSurface& cut) {
+    for (std::size_t i = 0; i < wall.triangles.size(); ++i)
+        for (int face = 0; face < box_faces; ++face) {
+            const int axis = face / 2;
+            const double plane = face % 2 == 0 ? cut.box.min[axis] : cut.box.max[axis];
+            if (std::ranges::all_of(wall.triangles[i], [&](int p) { return wall.points[as_size(p)][axis] == plane; }))
+                throw SurfaceError("the line in which it ends on " + wall_name(face) + " has too few edges, at " +
+                                   place_words(wall.points[as_size(wall.triangles[i][0])]), {i});
+        }
+}
+
+}  // namespace
+
 Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
     Snapshot bounded = at;
     for (std::size_t body = 0; body < walls.size(); ++body) {
@@ -270,15 +285,19 @@ Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
         std::vector<Vec3> points = walls[body].points;
         try {
             if (shape.cut) {
+                refuse_closed_on_faces(walls[body], *shape.cut);
                 shape = shape_of_facets(std::move(points), walls[body].triangles, &shape.cut->box);
                 continue;
             }
             for (Vec3& x : points) x -= shape.centre;
             shape = shape_within(make_surface(std::move(points), walls[body].triangles), shape.centre);
         } catch (const SurfaceError& error) {
-            throw DomainError("body " + std::to_string(body + 1) + ": at its target size of " +
-                              metres(surface_size(at, body)) + " " + error.what() +
-                              " (from its centre); a part of it is thinner than that: a smaller size would do");
+            const Surface& wall = walls[body];
+            const double size = error.triangles.empty()
+                                    ? surface_size(at, body)
+                                    : surface_size(at, body, wall.points[as_size(wall.triangles[error.triangles.front()][0])]);
+            throw BodyError(body, "at its target size, " + metres(size) + " there, " + error.what() +
+                                      (shape.cut ? "" : " (from its centre)") + "; a smaller size may do");
         }
     }
     return bounded;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <kropla/base/error.h>
 #include <kropla/generate/generate.h>
 
 namespace kropla {
@@ -11,9 +12,15 @@ namespace kropla {
 /// 3 h^2 / (8 r^2) less than the body. Where corners are nearer to each other than `size`, edges are as short as that.
 [[nodiscard]] Surface resampled(const Shape& shape, const SurfaceSize& size, const Watch* watch = nullptr);
 
+/// Of the surface of a body: it cannot be had with triangles as large as they are asked for.
+struct BodyError : DomainError {
+    BodyError(std::size_t of, const std::string& what) : DomainError(what), body(of) {}
+    std::size_t body;  // its number in the snapshot
+};
+
 /// The snapshot with, for each shape that triangles bound, what its surface among `walls` bounds: no finer than the mesh,
-/// so that distances cost no more than that. Throws DomainError if such a surface cuts itself, as where a part is
-/// thinner than its triangles; says that a smaller size would do.
+/// so that distances cost no more than that. Throws BodyError if such a surface cuts itself, as where a part is thinner than its
+/// triangles, or closes on a face of the box, where it ends in a line that is shorter than these; says that a smaller size would do.
 [[nodiscard]] Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at);
 
 /// A point that was put into an edge.

@@ -110,7 +110,8 @@ bool may_flip(const Sheet& sheet, Half h) {
     const Vertex b = sheet.origin[h], c = sheet.origin[t], a = sheet.apex(h), d = sheet.apex(t);
     const Vec3 out = normal_area(sheet, h) + normal_area(sheet, t), from = sheet.place[a];
     const Vec3 to_b = sheet.place[b] - from, to_c = sheet.place[c] - from, to_d = sheet.place[d] - from;
-    if (dot(cross(to_b, to_d), out) <= 0 || dot(cross(to_d, to_c), out) <= 0) return false;
+    for (const Vec3& area : {cross(to_b, to_d), cross(to_d, to_c)})
+        if (dot(area, out) <= most_turned * norm(area) * norm(out)) return false;
     bool joined = false;
     for_each_leaving(sheet, a, [&](Half from_a) { joined = joined || sheet.target(from_a) == d; });
     return !joined;
@@ -156,7 +157,6 @@ bool holds_let_collapse(const Sheet& sheet, Half h) {
 }  // namespace
 
 bool may_collapse(const Sheet& sheet, Half h, double longest) {
-    constexpr double most_turned = 0.5;  // the cosine
     if (!holds_let_collapse(sheet, h)) return false;
     const Vertex b = sheet.origin[h], c = sheet.target(h);
     const Vec3& to = sheet.place[c];

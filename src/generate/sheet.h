@@ -58,8 +58,12 @@ void for_each_leaving(const Sheet& sheet, Vertex v, const Visit& visit) {
 /// Puts a vertex at `place` into the edge; returns it. A crease stays one, in two parts.
 Vertex split_edge(Sheet& sheet, Half h, const Vec3& place);
 
+/// [-] how much triangles may be turned by what is done at once: the cosine.
+inline constexpr double most_turned = 0.5;
+
 /// May the edge be exchanged for the one across its two triangles? Not if it is a crease or that one is there already,
-/// nor if the new triangles would be turned against the old ones.
+/// nor if the new triangles would be turned by more than `most_turned` against the old ones: long ones along a round wire would
+/// fold.
 [[nodiscard]] bool may_flip(const Sheet& sheet, Half h);
 void flip_edge(Sheet& sheet, Half h);
 

@@ -17,8 +17,8 @@ struct FixedMesh {
 /// Throws FileError, naming the cell but not the file, if a facet has more than two cells.
 [[nodiscard]] FixedMesh fixed_mesh(const FileCells& cells);
 
-/// Where two cells lie on one side of the facet between them, or a facet belongs to more than two: the first place in
-/// words, and how many there are; empty if the mesh has none.
+/// Where two cells lie on one side of the facet between them: the first place in words, and how many there are; empty if the
+/// mesh has none.
 [[nodiscard]] std::string fault_of_sides(const FixedMesh& fixed);
 
 /// Puts the mesh, which may have been changed within its boundary and interfaces, in the place of the file's tets.

@@ -19,8 +19,8 @@ struct LoosePrism {
 /// Gives a mesh that was made of the tets alone the layers that these prisms are: columns from wall to shell,
 /// one layer per connected wall and side of it, in the order of their first prisms. The tets' facets on walls
 /// and shells get their patches; a layer in the surroundings belongs to the body beyond its wall.
-/// Throws FileError, naming the cell, if the prisms are no stacks: one without another below, two on one
-/// place, columns that part or differ in length, or a wall that is not a body's.
+/// Throws FileError, naming the cell where it is one, if the prisms are no stacks: one without another below, two on one
+/// place, columns that part or differ in length, a wall that is not a body's; or if there are more than 13 layers.
 void attach_layers(Mesh& mesh, std::span<const LoosePrism> prisms);
 
 }  // namespace kropla

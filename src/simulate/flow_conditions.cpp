@@ -154,6 +154,8 @@ LiquidSurface liquid_surface(const Mesh& mesh, const FlowOptions& options, Regio
                              const Array<Vertex, double>& temperature) {
     LiquidSurface liquid{body, region_surface(mesh, body).interface, {}, {}};
     liquid.vertices = vertices_of(liquid.facets);
+    if (const auto &within = options.regions[as_size(body.value)], &around = options.regions.front(); within && around)
+        liquid.denser = within->density(0) - around->density(0);
     set_lines(mesh, options, liquid);
     liquid.tension.assign(liquid.vertices.size(), 0);
     const auto number = static_cast<std::size_t>(body.value - 1);

@@ -201,7 +201,7 @@ private:
     }
     /// What forces bring, less what goes out through faces, in the part of the step that a stage stands for.
     void note_momentum(const FlowStage& stage, double dt) {
-        pushed_ += dt * inertia(stage, cells_);
+        pushed_ += dt * (inertia(stage, cells_) - surfaces_.passing(guess_.velocity));
         for (const auto& facets : boundary_.faces)
             for_each_flux(facets, stage.position, guess_.velocity, [&](Vertex v, double flux) {
                 const double density = gas_ ? gas_->densities()[v] : material_[Region(0)].density;
@@ -292,6 +292,7 @@ private:
                         [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
                         system_, ranks_.watch);
         surfaces_.add(guess_.velocity, stage.per_time > 0 ? 1 / stage.per_time : 0, derivative, system_);
+        if (options_.convection && !steady()) surfaces_.add_passing(guess_.velocity, derivative, system_);
         for (std::size_t r = 0; r < rows().count() && gas_; ++r)
             system_.residual[block_size * r + 3] += gas_->expansion(vertex_of(r));
         reaction_ = system_.residual;
@@ -336,14 +337,22 @@ private:
         return all;
     }
 
+    /// Of cells as they go with the mesh, or as if they stood, whichever is less: however short the step is, vertices that are
+    /// smoothed go some way in it.
     [[nodiscard]] double largest_courant() const {
         if (steady()) return 0;
         const std::array<Array<Vertex, double>, 6> none;
-        const FlowStage stage{current_, current_.position, mesh_velocity_, guess_.velocity, guess_, material_,
-                              conditions_.open, none, {}, 0, true, upper()};
+        const Array<Vertex, Vec3> at_rest;
+        const auto stage_on = [&](const Array<Vertex, Vec3>& mesh_velocity) {
+            return FlowStage{current_, current_.position, mesh_velocity, guess_.velocity, guess_, material_,
+                             conditions_.open, none, {}, 0, true, upper()};
+        };
+        const FlowStage going = stage_on(mesh_velocity_), standing = stage_on(at_rest);
         double most = 0, all = 0;
         for (const Cells* cells : {&blocks_.pattern.cells, &blocks_.pattern.upper})
-            for_each_cell(*cells, [&](const auto& cell) { most = std::max(most, crossing_rate(stage, cell)); });
+            for_each_cell(*cells, [&](const auto& cell) {
+                most = std::max(most, std::min(crossing_rate(going, cell), crossing_rate(standing, cell)));
+            });
         MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, ranks_.communicator);
         return dt_ * all;
     }

@@ -45,6 +45,7 @@ struct LiquidSurface {
     std::vector<std::array<Vertex, 3>> facets;  // normals out of the body
     std::vector<Vertex> vertices;               // ascending
     std::vector<double> tension;                // [N/m] at them
+    double denser = 0;                          // [kg/m^3] than what is around
     std::vector<ContactLine> lines = {};
     // Of the directions x, y and z that a vertex may go along with the surface 1, of the others 0: across a face of the box.
     std::vector<Vec3> free = {};  // empty: all

@@ -73,7 +73,7 @@ struct Advanced {
 
 /// Takes mesh and fields one step on, by `dt` [s] or as much of it as can be done: the paper's 2.1 to 2.6.
 ///
-/// An attempt that the mesh stops is tried again, remeshed where it got stuck; then, as one that the solver or the
+/// An attempt that a tet stops is tried again, remeshed where it got stuck; then, as one that a gap, a prism, the solver or the
 /// transfer refuses, with the dt that was advised, if that is between an eighth and a half of it, else with half. On any
 /// exception mesh, fields and the caller's arrays are as they were, bit for bit.
 ///

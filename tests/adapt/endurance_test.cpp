@@ -7,7 +7,7 @@
 namespace kropla {
 namespace {
 
-// The short form of `make endurance`: its bounds over some hundred steps. Work is counted in cells here, which no
+// The short form of `make endurance`: its bounds over sixty steps. Work is counted in cells here, which no
 // busy machine disturbs.
 TEST(Endurance, ALayeredDropletWandersAmongBodies) {
     constexpr std::uint64_t seed = 1;

@@ -223,6 +223,20 @@ TEST(RunFlow, CutsStepsByCourantNumbers) {
     for (std::size_t n = 0; n < courant.size(); ++n) EXPECT_LT(courant[n], 1.1 * 0.3);
 }
 
+// Vertices that are smoothed go a fifth of a cell in a step, however short it is: that is no limit.
+TEST(RunFlow, StepsAroundABodyThatMovesMayBeShort) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", "[domain]\nmin = [-2.5, -2.5, 0]\nmax = [2.5, 2.5, 6]\n[[body]]\nname = \"ball\"\nshape = \"sphere\"\n"
+                                  "centre = [0, 0, 3.8]\nradius = 1\n[body.motion]\nz = \"-t\"\n[size]\nsurface = 0.4\ngrowth = 0.2\n"
+                                  "far = 0.8\n[time]\nend = 0.1\nsteps = 1\ncourant = 0.1\n[flow.region.surroundings]\ndensity = 1\n"
+                                  "viscosity = 0.01\n");
+    const Outcome it = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(it.code, 0) << it.err;
+    const std::vector<double> courant = numbers(read_table(folder.path / "d/steps.csv"), "courant");
+    EXPECT_GE(courant.size(), 2u);
+    EXPECT_LT(*std::ranges::max_element(courant), 1.1 * 0.1);
+}
+
 TEST(RunFlow, WhatIsWrongIsNamed) {
     const TemporaryFolder folder;
     const std::string text = falling(0.2, 2);

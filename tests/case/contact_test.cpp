@@ -62,6 +62,10 @@ TEST(CaseContact, WhatIsWrongIsNamed) {
               "case.toml: contact.gap (line 24): must be at most half of size.surface, 0.06 m, got 0.07");
     EXPECT_EQ(refusal(text + "friction = 1\n"),
               "case.toml: contact.friction (line 24): unknown key; known here: lubrication, restitution, gap");
+    const std::string floor = "[[body]]\nname = \"floor\"\nshape = \"slab\"\nmin = [0, 0, 0]\nmax = [1, 1, 0.2]\n[flow]\n";
+    EXPECT_EQ(refusal(replaced(text, "[flow]\n", floor)),
+              "case.toml: contact (line 28): is known between spheres and ellipsoids, and with faces of the box; body \"floor\" is bounded "
+              "by triangles, or reaches through a face");
     EXPECT_TRUE(refusal(text + "lubrication = 1\n").starts_with("case.toml: contact.lubrication (line 24): must be true"));
     EXPECT_EQ(refusal(replaced(text, "density = 3\n", "density = 3\n[body.layer]\nmin_gap = 0.05\n") + "gap = 0.04\n"),
               "case.toml: contact.gap (line 26): 0.04 m is less than layer.min_gap = 0.05 m leaves; a smaller min_gap does, as gap "

@@ -37,6 +37,23 @@ TEST(CaseErrors, UnknownKeysComeWithASuggestion) {
     });
 }
 
+TEST(CaseErrors, ExpressionsKnowWhatTheirKeyDependsOn) {
+    expect_refusals({
+        {"source = \"1e6*x*t + y - z\"", "power = \"100*z\"",
+         "heat.region.droplet.power (line 38): \"100*z\": \"z\" at character 5 is not known; known are t, pi and functions such as "
+         "sin, exp, sqrt"},
+        {"initial = 2400.5", "initial = \"2400 + t\"",
+         "heat.region.droplet.initial (line 37): \"2400 + t\": \"t\" at character 8 is not known; known are x, y, z, pi and functions "
+         "such as sin, exp, sqrt"},
+    });
+}
+
+TEST(CaseErrors, NamesOfSpeciesAreNotThoseOfOtherArrays) {
+    for (const char* name : {"region", "velocity", "pressure", "salt_within", "layer"})
+        EXPECT_EQ(refusal(std::string(full_case) + "[[species]]\nname = \"" + name + "\"\n"),
+                  std::string("case.toml: species[0].name (line 53): must be one that is not taken yet, got \"") + name + "\"");
+}
+
 TEST(CaseErrors, MissingKeys) {
     expect_refusals({
         {"radius = 0.001\n", "", "body[0].radius (line 4): is missing; it must be positive"},

@@ -162,6 +162,33 @@ TEST(Resampled, SmoothSurfacesFineOrCoarseBecomeWellShapedTriangles) {
     }
 }
 
+/// One row of long triangles, as CAD writes a wire, about z.
+Triangles wire(double radius, double half_length, int around) {
+    Triangles t;
+    for (double z : {-half_length, half_length})
+        for (int i = 0; i < around; ++i) {
+            const double a = 2 * std::numbers::pi * i / around;
+            t.points.push_back({radius * std::cos(a), radius * std::sin(a), z});
+        }
+    for (int i = 0; i < around; ++i) {
+        const int j = (i + 1) % around;
+        t.triangles.push_back({i, j, j + around});
+        t.triangles.push_back({i, j + around, i + around});
+        if (i == 0 || j == 0) continue;
+        t.triangles.push_back({0, j, i});
+        t.triangles.push_back({around, i + around, j + around});
+    }
+    return t;
+}
+
+TEST(Resampled, LongTrianglesOfAWireDoNotFold) {
+    for (double size : {0.2, 0.1, 0.05})
+        for (int around : {12, 24, 48}) {
+            const Surface s = resampled(shape_of(wire(0.2, 1, around)), {size});
+            EXPECT_NO_THROW((void)make_surface(s.points, s.triangles)) << size << ' ' << around;
+        }
+}
+
 TEST(GenerateMesh, TakesAnyClosedSurface) {
     const Rotation turned = rotation_about({1, -2, 0.5}, 0.4);
     expect_mesh(domain_with(shape_of(box_of_triangles({-1, -1, -1}, {1, 1, 1})), 0.6), 8);
