@@ -225,6 +225,14 @@ private:
         }
     }
 
+    /// In version 2.2 an element of several groups stands there once for each, one after another: the first counts.
+    void drop_further_group() {
+        if (elements_.size() < 2) return;
+        const Element &last = elements_.back(), &before = elements_[elements_.size() - 2];
+        const bool same = last.type == before.type && last.entity == before.entity && last.vertices == before.vertices;
+        if (same && last.physical != before.physical) elements_.pop_back();
+    }
+
     void read_old_elements() {
         const std::size_t count = old_count("elements", 4);
         elements_.reserve(count);
@@ -244,6 +252,7 @@ private:
                     if (tag == 1) element.entity = value;
                 }
                 read_corners<int>(element);
+                drop_further_group();
             }
         }
     }

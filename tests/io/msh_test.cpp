@@ -79,6 +79,11 @@ TEST(Msh, ElementsOfNoGroupAmongOthersHaveNone) {
     EXPECT_EQ(cells.passed_over, 2u);
 }
 
+TEST(Msh, AnElementOfSeveralGroupsIsOfTheFirst) {
+    const std::string twice = "4\n1 2 2 3 13 10 20 30\n2 4 2 1 17 10 20 30 50\n3 4 2 2 17 10 20 30 50\n4 4 2 2 18 10 30 20 40\n";
+    EXPECT_EQ(cells_from("a.msh", file_22(twice)).region, (Array<Tet, Region>{Region(1), Region(2)}));
+}
+
 TEST(Msh, CellsComeInTheOrderOfTheirTags) {
     const std::string swapped = "2\n9 4 2 1 1 10 20 30 50\n3 4 2 2 2 10 30 20 40\n";
     EXPECT_EQ(cells_from("a.msh", file_22(swapped)).region, (Array<Tet, Region>{Region(2), Region(1)}));
