@@ -34,9 +34,9 @@ steps = 4
 )toml";
 
 TEST(CaseDeforming, AVelocityTakesPlacesAlong) {
-    const Case it = parse_case(replaced(drop_case, "[\"0.5*sin(pi*x)*cos(pi*y)\", \"-0.5*cos(pi*x)*sin(pi*y)\", 0]",
+    const Case given = parse_case(replaced(drop_case, "[\"0.5*sin(pi*x)*cos(pi*y)\", \"-0.5*cos(pi*x)*sin(pi*y)\", 0]",
                                         "[\"-y\", \"x\", \"t\"]"), "case.toml");
-    const Deformation& deformation = it.domain.bodies[0].deformation;
+    const Deformation& deformation = given.domain.bodies[0].deformation;
     ASSERT_TRUE(deformation);
     const Vec3 there = deformation({2, 0, 1}, 0.1, 0.5);  // turned, by the classical method to the fourth power
     EXPECT_NEAR(there.x, 2 * std::cos(0.4), 2e-5);
@@ -47,8 +47,8 @@ TEST(CaseDeforming, AVelocityTakesPlacesAlong) {
 }
 
 TEST(CaseDeforming, IsWrittenAsItWasRead) {
-    const Case it = parse_case(std::string(drop_case), "case.toml");
-    const std::string written = to_toml(it);
+    const Case given = parse_case(std::string(drop_case), "case.toml");
+    const std::string written = to_toml(given);
     EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
     EXPECT_NE(written.find("kind = \"field\""), std::string::npos);
 }
@@ -71,8 +71,8 @@ TEST(CaseDeforming, RefusalsNameKeyAndLine) {
 TEST(RunDeforming, KeepsTheVolumeOfAFlowThatDoes) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", std::string(drop_case));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const auto columns = lasting_columns(folder.path / "d");
     const auto& volumes = columns.at("volume_drop");
     ASSERT_EQ(volumes.size(), 4u);
@@ -97,9 +97,9 @@ TEST(RunDeforming, GoesOnAsIfItHadNotStopped) {
 TEST(RunDeforming, AVelocityThatIsNoNumberEndsTheRunByItsName) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", replaced(drop_case, "sin(pi*y)\", 0]", "sin(pi*y)\", \"sqrt(0.4 - t)\"]"));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 2);
-    EXPECT_NE(it.err.find("a.toml: body[0].motion.velocity: is not a number at ("), std::string::npos) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_NE(ended.err.find("a.toml: body[0].motion.velocity: is not a number at ("), std::string::npos) << ended.err;
     EXPECT_TRUE(fs::exists(folder.path / "d/report.html"));
 }
 

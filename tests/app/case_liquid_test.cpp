@@ -40,11 +40,11 @@ tension = 1
 )toml";
 
 TEST(CaseLiquid, IsReadAndWrittenAgain) {
-    const Case it = parse_case(std::string(drop_case), "case.toml");
-    EXPECT_TRUE(it.domain.bodies[0].keeps_volume);
-    ASSERT_TRUE(it.flow->options.regions[1]);
-    EXPECT_EQ(it.flow->options.tension.at(0)->operator()(0), 1);
-    const std::string written = to_toml(it);
+    const Case given = parse_case(std::string(drop_case), "case.toml");
+    EXPECT_TRUE(given.domain.bodies[0].keeps_volume);
+    ASSERT_TRUE(given.flow->options.regions[1]);
+    EXPECT_EQ(given.flow->options.tension.at(0)->operator()(0), 1);
+    const std::string written = to_toml(given);
     EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
     EXPECT_NE(written.find("[flow.surface.\"drop\"]\ntension = 1"), std::string::npos) << written;
 }
@@ -63,8 +63,8 @@ TEST(CaseLiquid, RefusalsNameKeyAndLine) {
 TEST(RunLiquid, RingsAndKeepsItsVolume) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", std::string(drop_case));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const auto columns = lasting_columns(folder.path / "d");
     const auto number = [&](const char* name, std::size_t step) { return std::stod(columns.at(name).at(step)); };
     EXPECT_NEAR(number("volume_drop", 3) / number("volume_drop", 0), 1, 1e-13);
@@ -134,12 +134,12 @@ contact = )toml" + std::string(contact) + "\n[flow.face]\nz_min = " + std::strin
 TEST(CaseLiquid, OnAFloorIsReadAndWrittenAgain) {
     for (const auto& [contact, floor] : {std::pair{"60", "\"slip\""}, std::pair{"\"pinned\"", "\"wall\""},
                                          std::pair{"{ z_min = 60 }", "\"slip\""}}) {
-        const Case it = parse_case(sessile_case(contact, floor), "case.toml");
-        const auto& angle = it.flow->options.contact.at(0).at(4);
-        EXPECT_EQ(angle.has_value(), it.flow->options.faces[4].kind == FlowFace::Kind::slip);
+        const Case given = parse_case(sessile_case(contact, floor), "case.toml");
+        const auto& angle = given.flow->options.contact.at(0).at(4);
+        EXPECT_EQ(angle.has_value(), given.flow->options.faces[4].kind == FlowFace::Kind::slip);
         EXPECT_EQ(angle.value_or(60), 60);
-        EXPECT_EQ((it.domain.bodies[0].pinned >> 4 & 1u) != 0, !angle.has_value());
-        const std::string written = to_toml(it);
+        EXPECT_EQ((given.domain.bodies[0].pinned >> 4 & 1u) != 0, !angle.has_value());
+        const std::string written = to_toml(given);
         EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
         EXPECT_NE(written.find(std::string("contact = ") + contact), std::string::npos) << written;
         EXPECT_NE(written.find("radius = 1\ncut = true"), std::string::npos) << written;
@@ -165,8 +165,8 @@ TEST(CaseLiquid, RefusesLinesThatCannotMove) {
 TEST(RunLiquid, SpreadsOnAFloorThatItWets) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", sessile_case("60", "\"slip\""));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const auto columns = lasting_columns(folder.path / "d");
     const auto number = [&](const char* name, std::size_t step) { return std::stod(columns.at(name).at(step)); };
     EXPECT_NEAR(number("volume_drop", 9) / number("volume_drop", 0), 1, 1e-13);
@@ -178,8 +178,8 @@ TEST(RunLiquid, SpreadsOnAFloorThatItWets) {
 TEST(RunLiquid, SagsOnALineThatIsPinned) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", sessile_case("\"pinned\"", "\"wall\""));
-    const Outcome it = kropla_program(folder, "run a.toml --out d --set flow.gravity=[0,0,-1]");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d --set flow.gravity=[0,0,-1]");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const auto columns = lasting_columns(folder.path / "d");
     const auto number = [&](const char* name, std::size_t step) { return std::stod(columns.at(name).at(step)); };
     EXPECT_NEAR(number("volume_drop", 9) / number("volume_drop", 0), 1, 1e-13);

@@ -53,14 +53,14 @@ protected:
 
 TEST_F(CaseMeshTest, BodiesAreRegionsByNameOrNumber) {
     for (const std::string& text : {std::string(case_text), replaced("\"the rotor, hot\"", "1")}) {
-        const Case it = read(text);
-        ASSERT_TRUE(it.mesh);
-        EXPECT_EQ(it.domain.box.min, (Vec3{0, 0, 0}));
-        EXPECT_EQ(it.domain.box.max, (Vec3{6e-3, 6e-3, 6e-3}));
-        EXPECT_EQ(it.domain.walls, nullptr);
-        EXPECT_NEAR(volume(it.domain.bodies[0].shape), region_volume(*it.mesh->mesh, Region(1)), 1e-22);
-        EXPECT_EQ(verify(*it.mesh->mesh), "");
-        EXPECT_EQ(to_toml(read(to_toml(it))), to_toml(it));
+        const Case given = read(text);
+        ASSERT_TRUE(given.mesh);
+        EXPECT_EQ(given.domain.box.min, (Vec3{0, 0, 0}));
+        EXPECT_EQ(given.domain.box.max, (Vec3{6e-3, 6e-3, 6e-3}));
+        EXPECT_EQ(given.domain.walls, nullptr);
+        EXPECT_NEAR(volume(given.domain.bodies[0].shape), region_volume(*given.mesh->mesh, Region(1)), 1e-22);
+        EXPECT_EQ(verify(*given.mesh->mesh), "");
+        EXPECT_EQ(to_toml(read(to_toml(given))), to_toml(given));
     }
 }
 
@@ -70,8 +70,8 @@ TEST_F(CaseMeshTest, OtherRegionsAreTheSurroundings) {
         cells.region[t] = Region(cells.region[t] == surroundings ? 7 + t.value % 2 : 3);
     cells.region_names = {{3, "the rotor, hot"}};
     write_mesh_file(folder / "a.msh", cells);
-    const Case it = read(case_text);
-    EXPECT_EQ(region_numbers(cells_of(*it.mesh->mesh)), (std::vector{0, 1}));
+    const Case given = read(case_text);
+    EXPECT_EQ(region_numbers(cells_of(*given.mesh->mesh)), (std::vector{0, 1}));
 }
 
 TEST_F(CaseMeshTest, PlanesAreFoundAlsoIfRounded) {
@@ -79,9 +79,9 @@ TEST_F(CaseMeshTest, PlanesAreFoundAlsoIfRounded) {
     for (Vec3& x : cells.position)
         if (x.z == 6e-3) x.z += 1e-18 * std::sin(1e6 * x.x);
     write_mesh_file(folder / "a.msh", cells);
-    const Case it = read(case_text);
-    EXPECT_EQ(it.domain.walls, nullptr);
-    EXPECT_EQ(patch_numbers(cells_of(*it.mesh->mesh)), (std::vector{1, 2, 3, 4, 5, 6}));
+    const Case given = read(case_text);
+    EXPECT_EQ(given.domain.walls, nullptr);
+    EXPECT_EQ(patch_numbers(cells_of(*given.mesh->mesh)), (std::vector{1, 2, 3, 4, 5, 6}));
 }
 
 TEST_F(CaseMeshTest, WhatIsInNoFaceStaysAsItIs) {
@@ -91,11 +91,11 @@ TEST_F(CaseMeshTest, WhatIsInNoFaceStaysAsItIs) {
         x.x *= 1 + 20 * x.z;  // the faces across x lean
     }
     write_mesh_file(folder / "a.msh", cells);
-    const Case it = read(case_text);
-    ASSERT_NE(it.domain.walls, nullptr);
-    EXPECT_EQ(patch_numbers(cells_of(*it.mesh->mesh)), (std::vector{1, 3, 4, 5, 6, 7}));  // x min is still a plane
-    Domain domain = it.domain;
-    MovingMesh moving(domain, first_mesh(it, nullptr), 0);  // throws if they do not fit
+    const Case given = read(case_text);
+    ASSERT_NE(given.domain.walls, nullptr);
+    EXPECT_EQ(patch_numbers(cells_of(*given.mesh->mesh)), (std::vector{1, 3, 4, 5, 6, 7}));  // x min is still a plane
+    Domain domain = given.domain;
+    MovingMesh moving(domain, first_mesh(given, nullptr), 0);  // throws if they do not fit
 }
 
 TEST_F(CaseMeshTest, SizesAreTheMeshesOwnUnlessGiven) {

@@ -41,15 +41,15 @@ std::string refused(std::string_view from, std::string_view to) { return refusal
 }  // namespace
 
 TEST(CaseSolids, AreReadAndWritten) {
-    const Case it = parse_case(std::string(pool_case), "case.toml");
-    const Body &pool = it.domain.bodies[0], &wire = it.domain.bodies[1];
+    const Case given = parse_case(std::string(pool_case), "case.toml");
+    const Body &pool = given.domain.bodies[0], &wire = given.domain.bodies[1];
     EXPECT_EQ(reached_faces(pool.shape), 0b011111u);
     EXPECT_NEAR(volume(pool.shape), 2, 1e-14);
     EXPECT_EQ(reached_faces(wire.shape), 0b100000u);
     EXPECT_NEAR(volume(wire.shape), std::numbers::pi * 0.0625 * 0.5, 1e-14);
     EXPECT_EQ(pool.deformation({0.1, 0.2, 0.3}, 0, 1), (Vec3{0.1, 0.2, 0.3}));
     EXPECT_NEAR(wire.deformation({0.1, 0.2, 1.7}, 0, 1).z, 1.4, 1e-15);
-    const std::string written = to_toml(it);
+    const std::string written = to_toml(given);
     EXPECT_EQ(to_toml(parse_case(written, "again.toml")), written);
 }
 
@@ -75,8 +75,8 @@ TEST(CaseSolids, RefusalsNameKeyAndLine) {
 TEST(RunSolids, AWireIsFedTowardsAPool) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", std::string(pool_case));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const auto columns = lasting_columns(folder.path / "d");
     for (const std::string& v : columns.at("volume_pool")) EXPECT_NEAR(std::stod(v), 2, 1e-12);
     const double area = std::numbers::pi * 0.0625;
@@ -139,8 +139,8 @@ TEST(RunSolids, APlateIsHeatedAsABallComesDown) {
     for (const bool flows : {false, true}) {
         const TemporaryFolder folder;
         write(folder.path / "a.toml", std::string(plate_case) + std::string(flows ? in_a_flow : ""));
-        const Outcome it = kropla_program(folder, "run a.toml --out d");
-        ASSERT_EQ(it.code, 0) << it.err;
+        const Outcome ended = kropla_program(folder, "run a.toml --out d");
+        ASSERT_EQ(ended.code, 0) << ended.err;
         const auto columns = lasting_columns(folder.path / "d");
         for (std::size_t step = 0; step < 4; ++step) {
             const auto number = [&](const char* name) { return std::stod(columns.at(name)[step]); };
@@ -157,20 +157,20 @@ TEST(RunSolids, APlateIsHeatedAsABallComesDown) {
 TEST(RunSolids, ThroughAFaceOnlyUpright) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", replaced(pool_case, "from = [0, 0, 1.5]", "from = [-0.3, 0, 1.5]"));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 2);
-    EXPECT_NE(it.err.find("body \"wire\": at t = 166.667 ms its motion takes it through the wall z max, on which it does not stand upright at ("),
-              std::string::npos) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_NE(ended.err.find("body \"wire\": at t = 166.667 ms its motion takes it through the wall z max, on which it does not stand upright at ("),
+              std::string::npos) << ended.err;
 }
 
 TEST(RunSolids, OneThatStoodUprightMayNotTilt) {
     const TemporaryFolder folder;
     const std::string tilts = "min = [-0.5, -0.5, 0]\nmax = [0.5, 0.5, 0.5]\n[body.motion]\nangle = \"40*t\"\naxis = [1, 0, 0]\n[[body]]";
     write(folder.path / "a.toml", replaced(pool_case, "min = [-1, -1, 0]\nmax = [1, 1, 0.5]\n[[body]]", tilts));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 2);
-    EXPECT_NE(it.err.find("body \"pool\": at t = 166.667 ms its motion takes it through the wall z min, on which it does not stand upright at ("),
-              std::string::npos) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_NE(ended.err.find("body \"pool\": at t = 166.667 ms its motion takes it through the wall z min, on which it does not stand upright at ("),
+              std::string::npos) << ended.err;
 }
 
 TEST(RunSolids, ALineWithTooFewEdgesIsNamed) {
@@ -178,10 +178,10 @@ TEST(RunSolids, ALineWithTooFewEdgesIsNamed) {
     write(folder.path / "a.toml", "[domain]\nmin = [-2.5, -2.5, 0]\nmax = [2.5, 2.5, 6]\n[[body]]\nname = \"ball\"\nshape = \"sphere\"\n"
                                   "centre = [0, 0, 0.99]\nradius = 1\ncut = true\n[size]\nsurface = 0.4\ngrowth = 0.2\nfar = 0.8\n"
                                   "[time]\nend = 1\nsteps = 1\n");
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 2);
-    EXPECT_NE(it.err.find("body \"ball\": at its target size, 0.4 m there, the line in which it ends on the wall z min has too few edges, at ("),
-              std::string::npos) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_NE(ended.err.find("body \"ball\": at its target size, 0.4 m there, the line in which it ends on the wall z min has too few edges, at ("),
+              std::string::npos) << ended.err;
 }
 
 }  // namespace kropla

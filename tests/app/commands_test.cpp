@@ -15,10 +15,10 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-void expect_complaint(const Outcome& it, int code, const std::string& line) {
-    EXPECT_EQ(it.code, code);
-    EXPECT_EQ(it.err, "kropla: " + line + "\n");
-    EXPECT_EQ(it.out, "");
+void expect_complaint(const Outcome& ended, int code, const std::string& line) {
+    EXPECT_EQ(ended.code, code);
+    EXPECT_EQ(ended.err, "kropla: " + line + "\n");
+    EXPECT_EQ(ended.out, "");
 }
 
 TEST(Arguments, ArePartedIntoThoseOfTheSolverAndTheRest) {
@@ -35,11 +35,11 @@ TEST(Program, HelpsAndTellsItsVersion) {
          {"--help", "run --help", "sweep --help", "mesh --help", "check --help", "report --help", "new --help",
           "convert --help", "improve --help"}) {
         SCOPED_TRACE(arguments);
-        const Outcome it = kropla_program(folder, arguments);
-        EXPECT_EQ(it.code, 0);
-        EXPECT_NE(it.out.find("kropla "), std::string::npos) << it.out;
-        EXPECT_GT(it.out.size(), 200u);
-        EXPECT_EQ(it.err, "");
+        const Outcome ended = kropla_program(folder, arguments);
+        EXPECT_EQ(ended.code, 0);
+        EXPECT_NE(ended.out.find("kropla "), std::string::npos) << ended.out;
+        EXPECT_GT(ended.out.size(), 200u);
+        EXPECT_EQ(ended.err, "");
     }
     EXPECT_EQ(kropla_program(folder, "--version").out, "kropla " KROPLA_VERSION "\n");
 }
@@ -51,11 +51,11 @@ TEST(Program, BadArgumentsEndWithTwo) {
           "run a.toml --out d --threads many", "run a.toml --out d --fast", "mesh a.toml",
           "run a.toml --out d -kps_type cg", "check a.vtu -ksp_type cg"}) {
         SCOPED_TRACE(arguments);
-        const Outcome it = kropla_program(folder, arguments);
-        EXPECT_EQ(it.code, 2);
-        EXPECT_EQ(it.err.substr(0, 8), "kropla: ");
-        EXPECT_EQ(std::ranges::count(it.err, '\n'), 1) << it.err;
-        EXPECT_EQ(it.out, "");
+        const Outcome ended = kropla_program(folder, arguments);
+        EXPECT_EQ(ended.code, 2);
+        EXPECT_EQ(ended.err.substr(0, 8), "kropla: ");
+        EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
+        EXPECT_EQ(ended.out, "");
     }
 }
 
@@ -80,10 +80,10 @@ TEST(Program, BodiesThatLeaveTheBoxEndWithTwo) {
     for (const char* command :
          {"run leaving.toml --out d", "mesh leaving.toml -o m.vtu", "run lost.toml --out d"}) {
         SCOPED_TRACE(command);
-        const Outcome it = kropla_program(folder, command);
-        EXPECT_EQ(it.code, 2);
-        EXPECT_NE(it.err.find(".toml: body \"droplet\": motion "), std::string::npos) << it.err;
-        EXPECT_EQ(std::ranges::count(it.err, '\n'), 1) << it.err;
+        const Outcome ended = kropla_program(folder, command);
+        EXPECT_EQ(ended.code, 2);
+        EXPECT_NE(ended.err.find(".toml: body \"droplet\": motion "), std::string::npos) << ended.err;
+        EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
     }
 }
 
@@ -170,9 +170,9 @@ TEST(Program, EndsWithSixIfThereIsNotEnoughMemory) {
 
 TEST(Program, WritesACaseToStartFrom) {
     const TemporaryFolder folder;
-    const Outcome it = kropla_program(folder, "new drop");
-    EXPECT_EQ(it.code, 0);
-    EXPECT_NE(it.out.find("kropla run drop.toml --out drop"), std::string::npos) << it.out;
+    const Outcome ended = kropla_program(folder, "new drop");
+    EXPECT_EQ(ended.code, 0);
+    EXPECT_NE(ended.out.find("kropla run drop.toml --out drop"), std::string::npos) << ended.out;
     EXPECT_EQ(contents(folder.path / "drop.toml"),
               contents(std::filesystem::path(KROPLA_CASES) / "droplet.toml"));
     expect_complaint(kropla_program(folder, "new drop.toml"), 2,
@@ -206,11 +206,11 @@ TEST(Program, AFloorThatNoMeshReachesEndsWithThree) {
     EXPECT_LE(summarise_quality(read_vtu(folder.path / "near.vtu").mesh).max_aspect_ratio, 5);
 
     write(folder.path / "plate.toml", with_body("shape = \"slab\"\nmin = [0.2, 0.2, 0.45]\nmax = [0.8, 0.8, 0.55]\n"));
-    const Outcome it = kropla_program(folder, "mesh plate.toml -o plate.vtu");
-    EXPECT_EQ(it.code, 3);
-    EXPECT_TRUE(it.err.starts_with("kropla: the initial mesh cannot be made: ")) << it.err;
-    EXPECT_NE(it.err.find(", limit 5)"), std::string::npos) << it.err;
-    EXPECT_EQ(std::ranges::count(it.err, '\n'), 1) << it.err;
+    const Outcome ended = kropla_program(folder, "mesh plate.toml -o plate.vtu");
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_TRUE(ended.err.starts_with("kropla: the initial mesh cannot be made: ")) << ended.err;
+    EXPECT_NE(ended.err.find(", limit 5)"), std::string::npos) << ended.err;
+    EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
     EXPECT_FALSE(std::filesystem::exists(folder.path / "plate.vtu"));
 }
 

@@ -15,9 +15,9 @@ bool says(const std::string& text, const std::string& words) { return text.find(
 TEST(Convert, TellsWhatTheMeshHolds) {
     const TemporaryFolder folder;
     write_mesh_file(folder.path / "a.vtu", named_cube());
-    const Outcome it = kropla_program(folder, "convert a.vtu a.msh");
-    EXPECT_EQ(it.code, 0);
-    EXPECT_EQ(it.out, "a.msh: 384 tets, 0 prisms, 125 vertices, 2 regions (surroundings, the rotor, hot), "
+    const Outcome ended = kropla_program(folder, "convert a.vtu a.msh");
+    EXPECT_EQ(ended.code, 0);
+    EXPECT_EQ(ended.out, "a.msh: 384 tets, 0 prisms, 125 vertices, 2 regions (surroundings, the rotor, hot), "
                       "7 patches (inlet, outlet, 3, 4, 5, 6, skin)\n");
     ASSERT_EQ(kropla_program(folder, "convert a.msh a.mesh").code, 0);
     ASSERT_EQ(kropla_program(folder, "convert a.mesh b.vtu").code, 0);
@@ -32,12 +32,12 @@ TEST(Convert, SaysWhatItMended) {
     cells.position.push_back({9, 9, 9});
     cells.fields.push_back({"heat", "", Array<Vertex, double>(cells.position.size(), 1.0)});
     write_mesh_file(folder.path / "a.vtu", cells);
-    const Outcome it = kropla_program(folder, "convert a.vtu b.msh");
-    EXPECT_EQ(it.code, 0);
+    const Outcome ended = kropla_program(folder, "convert a.vtu b.msh");
+    EXPECT_EQ(ended.code, 0);
     for (const char* words : {"1 vertex of no cell was dropped\n", "48 cells were inside out and were turned round\n",
                               "its boundary is the patch \"boundary\"\n", "left out, as only VTU holds fields here: heat\n",
                               "1 patch (boundary)"})
-        EXPECT_TRUE(says(it.out, words)) << words << it.out;
+        EXPECT_TRUE(says(ended.out, words)) << words << ended.out;
     ASSERT_EQ(kropla_program(folder, "convert a.vtu b.vtu").code, 0);
     EXPECT_EQ(read_mesh_file(folder.path / "b.vtu").fields.size(), 1u);
     EXPECT_EQ(kropla_program(folder, "check b.vtu b.msh").code, 0);
@@ -51,9 +51,9 @@ TEST(Convert, BadFilesEndInOneLine) {
                                           {"convert none.msh b.msh", 5}, {"convert bad.msh b.msh", 5}, {"improve bad.msh -o b.msh", 5},
                                           {"convert a.vtu none/b.msh", 5}, {"improve a.vtu", 2}, {"improve a.vtu -o b.txt", 2}}) {
         SCOPED_TRACE(arguments);
-        const Outcome it = kropla_program(folder, arguments);
-        EXPECT_EQ(it.code, code);
-        EXPECT_EQ(std::ranges::count(it.err, '\n'), 1) << it.err;
+        const Outcome ended = kropla_program(folder, arguments);
+        EXPECT_EQ(ended.code, code);
+        EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
         EXPECT_FALSE(std::filesystem::exists(folder.path / "b.msh"));
     }
 }
@@ -95,10 +95,10 @@ TEST(Improve, KeepsBoundaryInterfacesAndNames) {
     const TemporaryFolder folder;
     const FileCells bad = bad_cube(6);
     write_mesh_file(folder.path / "a.msh", bad);
-    const Outcome it = kropla_program(folder, "improve a.msh -o b.vtu");
-    EXPECT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "improve a.msh -o b.vtu");
+    EXPECT_EQ(ended.code, 0) << ended.err;
     for (const char* words : {"before", "after", "worst R/r", "R/r, 99.9 %", "least dihedral", "tets above R/r 10", "seconds"})
-        EXPECT_TRUE(says(it.out, words)) << words;
+        EXPECT_TRUE(says(ended.out, words)) << words;
     FileCells better = read_mesh_file(folder.path / "b.vtu");
     EXPECT_EQ(better.region_names, bad.region_names);
     EXPECT_EQ(better.patch_names, bad.patch_names);
@@ -132,10 +132,10 @@ TEST(Improve, RefusesAMeshThatOverlapsItself) {
     for (const Vertex v : cells.position.indices())
         if (distance(cells.position[v], {2e-3, 2e-3, 2e-3}) < 0.5e-3) cells.position[v] = {3.6e-3, 2e-3, 2e-3};
     write_mesh_file(folder.path / "a.msh", cells);
-    const Outcome it = kropla_program(folder, "improve a.msh -o b.msh");
-    EXPECT_EQ(it.code, 5);
-    EXPECT_TRUE(says(it.err, "a.msh: cells ")) << it.err;
-    EXPECT_TRUE(says(it.err, "lie on one side of the facet between them")) << it.err;
+    const Outcome ended = kropla_program(folder, "improve a.msh -o b.msh");
+    EXPECT_EQ(ended.code, 5);
+    EXPECT_TRUE(says(ended.err, "a.msh: cells ")) << ended.err;
+    EXPECT_TRUE(says(ended.err, "lie on one side of the facet between them")) << ended.err;
     EXPECT_FALSE(std::filesystem::exists(folder.path / "b.msh"));
 }
 

@@ -24,19 +24,19 @@ std::string documented(const std::string& heading) {
 }
 
 TEST(OutputDocuments, HaveTheColumnsOfSteps) {
-    Case it;
-    it.domain.bodies.resize(1);
-    it.domain.bodies[0].name = "NAME";
-    it.domain.box = {{0, 0, 0}, {1, 1, 1}};
-    it.domain.bodies[0].shape = slab(it.domain.box, {0, 0, 0}, {1, 1, 0.5});
-    it.liquid = {1};
-    it.heat.emplace();
-    it.species = {{.name = "SPECIES", .regions = {}}};
-    it.free.resize(1);
-    it.free[0].emplace();
-    it.contact.emplace();
-    it.flow.emplace().options.regions.emplace_back(FlowRegion{});
-    std::string header = csv_header(step_row(1, {}, {}, {}, it));
+    Case given;
+    given.domain.bodies.resize(1);
+    given.domain.bodies[0].name = "NAME";
+    given.domain.box = {{0, 0, 0}, {1, 1, 1}};
+    given.domain.bodies[0].shape = slab(given.domain.box, {0, 0, 0}, {1, 1, 0.5});
+    given.liquid = {1};
+    given.heat.emplace();
+    given.species = {{.name = "SPECIES", .regions = {}}};
+    given.free.resize(1);
+    given.free[0].emplace();
+    given.contact.emplace();
+    given.flow.emplace().options.regions.emplace_back(FlowRegion{});
+    std::string header = csv_header(step_row(1, {}, {}, {}, given));
     for (const char* face : {"x_max", "y_min", "y_max", "z_min", "z_max"}) {
         for (const std::string& column : {std::string("heat_out_") + face + " [W],",
                                           std::string("volume_out_") + face + " [m^3/s],"}) {

@@ -43,10 +43,10 @@ TEST(RemeshSurface, InterfacesChangeAndKeepVolumesAndPatches) {
     const FileCells bad = twisted_ball();
     write_mesh_file(folder.path / "a.msh", bad);
     ASSERT_EQ(kropla_program(folder, "improve a.msh -o kept.vtu").code, 0);
-    const Outcome it = kropla_program(folder, "improve a.msh -o b.vtu --remesh-surface");
-    EXPECT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "improve a.msh -o b.vtu --remesh-surface");
+    EXPECT_EQ(ended.code, 0) << ended.err;
     for (const char* words : {"triangles of interfaces", "their least angle [deg]", "their largest angle [deg]"})
-        EXPECT_TRUE(says(it.out, words)) << words;
+        EXPECT_TRUE(says(ended.out, words)) << words;
     const FileCells kept = read_mesh_file(folder.path / "kept.vtu"), better = read_mesh_file(folder.path / "b.vtu");
     EXPECT_GT(worst(bad), 300);
     EXPECT_GT(worst(kept), 7.8);  // reached: 8.64
@@ -77,18 +77,18 @@ TEST(RemeshSurface, TellsWhichInterfacesStay) {
     FileCells cells = twisted_ball();
     cells.facets.back().patch = 8;  // a part of the surface
     write_mesh_file(folder.path / "a.vtu", cells);
-    Outcome it = kropla_program(folder, "improve a.vtu -o b.vtu --remesh-surface");
-    EXPECT_TRUE(says(it.out, "the interface of regions 1 and 2 stays as it is: it has several patches, or one on a part of it\n")) << it.out;
+    Outcome ended = kropla_program(folder, "improve a.vtu -o b.vtu --remesh-surface");
+    EXPECT_TRUE(says(ended.out, "the interface of regions 1 and 2 stays as it is: it has several patches, or one on a part of it\n")) << ended.out;
     const FileCells better = read_mesh_file(folder.path / "b.vtu");
     EXPECT_EQ(facets_of(better, 9), 191);
     EXPECT_EQ(facets_of(better, 8), 1);
     for (const Tet t : cells.tets.indices())
         if (cells.region[t] == Region(2) && cells.position[cells.tets[t][0]].x > 0) cells.region[t] = Region(3);
     write_mesh_file(folder.path / "a.vtu", cells);
-    it = kropla_program(folder, "improve a.vtu -o b.vtu --remesh-surface");
+    ended = kropla_program(folder, "improve a.vtu -o b.vtu --remesh-surface");
     for (const char* pair : {"1 and 2", "1 and 3", "2 and 3"})
-        EXPECT_TRUE(says(it.out, std::string("the interface of regions ") + pair +
-                                     " stays as it is: it is at the boundary, at a third region, or touches itself\n")) << it.out;
+        EXPECT_TRUE(says(ended.out, std::string("the interface of regions ") + pair +
+                                     " stays as it is: it is at the boundary, at a third region, or touches itself\n")) << ended.out;
 }
 
 }  // namespace

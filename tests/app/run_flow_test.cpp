@@ -35,8 +35,8 @@ TEST(RunFlow, ABallFallsAndGoesOnBitByBit) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", falling(0.8, 4));
     write(folder.path / "half.toml", falling(0.4, 2));
-    const Outcome it = kropla_program(folder, "run a.toml --out whole");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out whole");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     ASSERT_EQ(kropla_program(folder, "run half.toml --out d").code, 0);
     ASSERT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
     EXPECT_EQ(lasting_columns(folder.path / "d"), lasting_columns(folder.path / "whole"));
@@ -62,8 +62,8 @@ TEST(RunFlow, ABallFallsAndGoesOnBitByBit) {
 TEST(RunFlow, WhatIsHeldStaysAndSpinsGoOn) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", falling(0.2, 2, "density = 3\nspin = [0, 0, 2]\nhold = [\"x\", \"y\", \"turn_x\"]\n"));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const Table steps = read_table(folder.path / "d/steps.csv");
     EXPECT_NEAR(numbers(steps, "x_ball").back(), numbers(steps, "x_ball").front(), 1e-12);
     EXPECT_EQ(numbers(steps, "spin_x_ball").back(), 0);
@@ -80,9 +80,9 @@ TEST(RunFlow, ABallLandsAndRestsBitByBit) {
     };
     write(folder.path / "a.toml", landing(1.2, 8));
     write(folder.path / "part.toml", landing(0.9, 6));  // until it touches
-    const Outcome it = kropla_program(folder, "run a.toml --out whole");
-    ASSERT_EQ(it.code, 0) << it.err;
-    EXPECT_NE(it.out.find("warning: body \"ball\" touches the wall z min at ("), std::string::npos) << it.out;
+    const Outcome ended = kropla_program(folder, "run a.toml --out whole");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("warning: body \"ball\" touches the wall z min at ("), std::string::npos) << ended.out;
     ASSERT_EQ(kropla_program(folder, "run part.toml --out d").code, 0);
     ASSERT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
     EXPECT_EQ(lasting_columns(folder.path / "d"), lasting_columns(folder.path / "whole"));
@@ -122,8 +122,8 @@ TEST(RunFlow, ASphereNearsTheFloorAsLubricationLetsIt) {
           "kind = \"free\"\ndensity = 2\n[flow]\ngravity = [0, 0, -0.045]\nconvection = false\n"
           "[flow.region.surroundings]\ndensity = 1\nviscosity = 2\n[contact]\n");
     const auto speed_by_known = [&](const std::string& set) {
-        const Outcome it = kropla_program(folder, "run a.toml --out d --force " + set);
-        EXPECT_EQ(it.code, 0) << it.err;
+        const Outcome ended = kropla_program(folder, "run a.toml --out d --force " + set);
+        EXPECT_EQ(ended.code, 0) << ended.err;
         const Table steps = read_table(folder.path / "d/steps.csv");
         const double speed = -numbers(steps, "w_ball").back(), pi = std::acos(-1.0);
         const double gap = numbers(steps, "gap_ball").back() + 0.5 * numbers(steps, "dt").back() * speed;  // half-way
@@ -137,9 +137,9 @@ TEST(RunFlow, ASphereNearsTheFloorAsLubricationLetsIt) {
 TEST(RunFlow, ABodyMayNotBeginNearerThanItMayCome) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", replaced(falling(1, 5), "0.9]", "0.2]") + "[contact]\ngap = 0.055\n");
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 2);
-    expect_one_line(it.err, "body \"ball\" begins 0.05 m from what is nearest to it, less than contact.gap = 0.055 m");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 2);
+    expect_one_line(ended.err, "body \"ball\" begins 0.05 m from what is nearest to it, less than contact.gap = 0.055 m");
 }
 
 /// In all steps, to this much [kg].
@@ -165,8 +165,8 @@ void expect_temperatures_kept(const TemporaryFolder& folder) {
 TEST(RunFlow, CarriesHeatAndSpecies) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", blown);
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const Table steps = read_table(folder.path / "d/steps.csv");
     EXPECT_GT(numbers(steps, "volume_out_z_min").back(), 0.3);
     const std::vector<double> energy = numbers(steps, "energy_integral"), error = numbers(steps, "energy_error"),
@@ -197,8 +197,8 @@ TEST(RunFlow, AGasExpandsAndKeepsMassAndEnergy) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", expanding());
     write(folder.path / "half.toml", replaced(expanding(), "end = 0.4\nsteps = 4", "end = 0.2\nsteps = 2"));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const Table steps = read_table(folder.path / "d/steps.csv");
     const std::vector<double> energy = numbers(steps, "energy_integral"), error = numbers(steps, "energy_error");
     for (std::size_t n = 0; n < energy.size(); ++n) {
@@ -216,8 +216,8 @@ TEST(RunFlow, AGasExpandsAndKeepsMassAndEnergy) {
 TEST(RunFlow, CutsStepsByCourantNumbers) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", replaced(blown, "steps = 4", "steps = 4\ncourant = 0.3"));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const std::vector<double> courant = numbers(read_table(folder.path / "d/steps.csv"), "courant");
     EXPECT_GT(courant.size(), 6u);
     for (std::size_t n = 0; n < courant.size(); ++n) EXPECT_LT(courant[n], 1.1 * 0.3);
@@ -230,8 +230,8 @@ TEST(RunFlow, StepsAroundABodyThatMovesMayBeShort) {
                                   "centre = [0, 0, 3.8]\nradius = 1\n[body.motion]\nz = \"-t\"\n[size]\nsurface = 0.4\ngrowth = 0.2\n"
                                   "far = 0.8\n[time]\nend = 0.1\nsteps = 1\ncourant = 0.1\n[flow.region.surroundings]\ndensity = 1\n"
                                   "viscosity = 0.01\n");
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const std::vector<double> courant = numbers(read_table(folder.path / "d/steps.csv"), "courant");
     EXPECT_GE(courant.size(), 2u);
     EXPECT_LT(*std::ranges::max_element(courant), 1.1 * 0.1);
@@ -266,9 +266,9 @@ TEST(RunFlow, WhatIsWrongIsNamed) {
         {replaced(text, "[time]\n", "[time]\ncourant = -1\n"), "time.courant (line 8): must be positive, got -1"}};
     for (const auto& [spoiled, refusal] : wrong) {
         write(folder.path / "a.toml", spoiled);
-        const Outcome it = kropla_program(folder, "run a.toml --out d --force");
-        EXPECT_EQ(it.code, 2) << refusal;
-        expect_one_line(it.err, refusal);
+        const Outcome ended = kropla_program(folder, "run a.toml --out d --force");
+        EXPECT_EQ(ended.code, 2) << refusal;
+        expect_one_line(ended.err, refusal);
     }
 }
 

@@ -23,9 +23,9 @@ TEST(RunFolder, IsLeftAsItWasIfTheInitialMeshIsInterrupted) {
         EXPECT_TRUE(fs::exists(folder.path / "deep/d/run.lock"));
         program.signal(signal);
         ASSERT_TRUE(program.ends_within(20));
-        const Outcome it = program.finish();
-        EXPECT_EQ(it.code, 130);
-        EXPECT_EQ(it.err, "kropla: interrupted while the initial mesh was made; nothing was written\n");
+        const Outcome ended = program.finish();
+        EXPECT_EQ(ended.code, 130);
+        EXPECT_EQ(ended.err, "kropla: interrupted while the initial mesh was made; nothing was written\n");
         EXPECT_FALSE(fs::exists(folder.path / "deep"));
     }
 }

@@ -38,8 +38,8 @@ TEST(RunHeat, WhatASourceGivesBetweenTwoStepEndsArrives) {
         SCOPED_TRACE(source);
         write(folder.path / "a.toml", cube_with(source));
         std::filesystem::remove_all(folder.path / "d");
-        const Outcome it = kropla_program(folder, "run a.toml --out d");
-        ASSERT_EQ(it.code, 0) << it.err;
+        const Outcome ended = kropla_program(folder, "run a.toml --out d");
+        ASSERT_EQ(ended.code, 0) << ended.err;
         const auto energy = numbers(read_table(folder.path / "d/steps.csv"), "energy_integral");
         EXPECT_NEAR(energy.at(2), 300, 1e-9);
         EXPECT_NEAR(energy.at(3), 300 + joules, 1e-9 * joules);
@@ -50,10 +50,10 @@ TEST(RunHeat, WhatASourceGivesBetweenTwoStepEndsArrives) {
 TEST(RunHeat, AQuantityWithoutAValueIsNamed) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", cube_with("\"sqrt(0.55 - t)\""));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 2);
-    expect_one_line(it.err, "a.toml: heat.region.surroundings.source is ");
-    EXPECT_NE(it.err.find(" m, t = 0.5"), std::string::npos) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 2);
+    expect_one_line(ended.err, "a.toml: heat.region.surroundings.source is ");
+    EXPECT_NE(ended.err.find(" m, t = 0.5"), std::string::npos) << ended.err;
     EXPECT_EQ(read_table(folder.path / "d/steps.csv").rows, 5u);
     write(folder.path / "b.toml", cube_with("0", "[heat.face]\nz_min = { flux = \"1/(t < 0.15)\" }\n"));
     expect_one_line(kropla_program(folder, "run b.toml --out e").err, "b.toml: heat.face.z_min.flux is inf at (");
@@ -63,8 +63,8 @@ TEST(RunHeat, AQuantityWithoutAValueIsNamed) {
 TEST(RunHeat, TemperaturesStayWithinTheirBounds) {
     const TemporaryFolder folder;
     write(folder.path / "coarse.toml", coarse_case());
-    const Outcome it = kropla_program(folder, "run coarse.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run coarse.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     for (const char* frame : {"d/frames/00001.vtu", "d/frames/00002.vtu"}) {
         const Frame read = read_vtu(folder.path / frame);
         const auto [least, most] = std::ranges::minmax(read.fields.at(0).values);
@@ -87,10 +87,10 @@ TEST(RunHeat, OptionsOfTheSolverThatAreWrongEndWithTwo) {
         {"-pc_type foo", "-pc_type foo: this value is not taken"}};
     for (const auto& [options, said] : wrong) {
         SCOPED_TRACE(options);
-        const Outcome it = kropla_program(folder, std::string("run a.toml --out d ") + options);
-        EXPECT_EQ(it.code, 2);
-        expect_one_line(it.err, said);
-        EXPECT_EQ(it.err.find("code 6"), std::string::npos) << it.err;
+        const Outcome ended = kropla_program(folder, std::string("run a.toml --out d ") + options);
+        EXPECT_EQ(ended.code, 2);
+        expect_one_line(ended.err, said);
+        EXPECT_EQ(ended.err.find("code 6"), std::string::npos) << ended.err;
         EXPECT_FALSE(std::filesystem::exists(folder.path / "d"));
     }
 }
@@ -105,15 +105,15 @@ TEST(RunHeat, OptionsOfAllKindsReachTheSolver) {
                                 "-potential_pc_hypre_boomeramg_strong_threshold 0.25"}) {
         SCOPED_TRACE(options);
         std::filesystem::remove_all(folder.path / "d");
-        const Outcome it = kropla_program(folder, std::string("run a.toml --out d ") + options);
-        EXPECT_EQ(it.code, 0) << it.err;
-        EXPECT_EQ(it.out.find("never used"), std::string::npos) << it.out;
+        const Outcome ended = kropla_program(folder, std::string("run a.toml --out d ") + options);
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        EXPECT_EQ(ended.out.find("never used"), std::string::npos) << ended.out;
     }
     std::filesystem::remove_all(folder.path / "d");
     write(folder.path / "b.toml", cube_with("0"));
-    const Outcome it = kropla_program(folder, "run b.toml --out d -potential_ksp_rtol 1e-9");
-    EXPECT_EQ(it.code, 0) << it.err;
-    EXPECT_NE(it.out.find("-potential_ksp_rtol was never used"), std::string::npos) << it.out;
+    const Outcome ended = kropla_program(folder, "run b.toml --out d -potential_ksp_rtol 1e-9");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("-potential_ksp_rtol was never used"), std::string::npos) << ended.out;
 }
 
 TEST(RunHeat, NeedsNoRemoteShell) {

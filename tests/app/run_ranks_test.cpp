@@ -36,11 +36,11 @@ TEST(Ranks, MoveTheSameMeshAndShareTheSolution) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(3));
     ASSERT_EQ(kropla_program(folder, "run a.toml --out one").code, 0);
-    const Outcome it = two_ranks(folder, "run a.toml --out two");
-    ASSERT_EQ(it.code, 0) << it.err;
-    const std::string steps_said = it.out.substr(opening_of(it.out));
-    EXPECT_EQ(std::ranges::count(steps_said, '\n'), 7) << it.out;  // every line once, and the last four
-    EXPECT_EQ(it.out.find('\r'), std::string::npos) << it.out;
+    const Outcome ended = two_ranks(folder, "run a.toml --out two");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const std::string steps_said = ended.out.substr(opening_of(ended.out));
+    EXPECT_EQ(std::ranges::count(steps_said, '\n'), 7) << ended.out;  // every line once, and the last four
+    EXPECT_EQ(ended.out.find('\r'), std::string::npos) << ended.out;
     for (const auto& [name, bytes] : frames(folder.path / "one")) {
         SCOPED_TRACE(name);
         const Frame one = read_vtu(folder.path / "one/frames" / name);
@@ -71,9 +71,9 @@ TEST(Ranks, ComplainOnceAndEndWithTheSameCode) {
         {"run a.toml --out taken", 5}};
     for (const auto& [arguments, code] : runs) {
         SCOPED_TRACE(arguments);
-        const Outcome it = two_ranks(folder, arguments);
-        EXPECT_EQ(it.code, code);
-        EXPECT_EQ(complaints(it.err), 1) << it.err;
+        const Outcome ended = two_ranks(folder, arguments);
+        EXPECT_EQ(ended.code, code);
+        EXPECT_EQ(complaints(ended.err), 1) << ended.err;
     }
 }
 

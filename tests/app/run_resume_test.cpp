@@ -22,10 +22,10 @@ std::string results_said(const std::string& out) {
 /// The case, run without a stop: the folder "whole".
 void run_whole(const TemporaryFolder& folder, const std::string& text) {
     write(folder.path / "a.toml", text);
-    const Outcome it = kropla_program(folder, "run a.toml --out whole");
-    ASSERT_EQ(it.code, 0);
-    opening = opening_of(it.out);
-    results = results_said(it.out);
+    const Outcome ended = kropla_program(folder, "run a.toml --out whole");
+    ASSERT_EQ(ended.code, 0);
+    opening = opening_of(ended.out);
+    results = results_said(ended.out);
     ASSERT_NE(results, "");
 }
 
@@ -49,11 +49,11 @@ TEST(Resume, EqualsTheWholeRunAfterAnInterrupt) {
         const TemporaryFolder folder;
         run_whole(folder, short_case(5, every));
         for (const int signal : {SIGINT, SIGTERM}) {
-            const Outcome it = stopped(folder, 2, signal);
-            EXPECT_EQ(it.code, 130);
-            EXPECT_EQ(it.err, "");
-            EXPECT_TRUE(it.out.ends_with("\ninterrupted: a checkpoint is written; go on with --resume\n"))
-                << it.out;
+            const Outcome ended = stopped(folder, 2, signal);
+            EXPECT_EQ(ended.code, 130);
+            EXPECT_EQ(ended.err, "");
+            EXPECT_TRUE(ended.out.ends_with("\ninterrupted: a checkpoint is written; go on with --resume\n"))
+                << ended.out;
             EXPECT_EQ(rows(folder), 2u);
             EXPECT_EQ(read_pvd(folder.path / "d/frames.pvd").size(), every == 1 ? 3u : 1u);
             const Outcome rest = kropla_program(folder, "run a.toml --out d --resume");
@@ -70,8 +70,8 @@ TEST(Resume, EqualsTheWholeRunAfterSuddenDeath) {
         SCOPED_TRACE(every);
         const TemporaryFolder folder;
         run_whole(folder, short_case(5, every));
-        const Outcome it = stopped(folder, 4, SIGKILL);
-        EXPECT_EQ(it.code, -1);
+        const Outcome ended = stopped(folder, 4, SIGKILL);
+        EXPECT_EQ(ended.code, -1);
         EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
         expect_same_run(folder.path / "d", folder.path / "whole");
     }
@@ -147,9 +147,9 @@ TEST(Resume, OfAFinishedRunChangesNothing) {
     const TemporaryFolder folder;
     run_whole(folder, short_case(2));
     fs::copy(folder.path / "whole", folder.path / "d", fs::copy_options::recursive);
-    const Outcome it = kropla_program(folder, "run a.toml --out d --resume");
-    EXPECT_EQ(it.code, 0) << it.err;
-    EXPECT_EQ(it.out, "d: the run is finished: step 2 at 400 us; nothing was done. With a later time.end it goes on\n");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d --resume");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.out, "d: the run is finished: step 2 at 400 us; nothing was done. With a later time.end it goes on\n");
     expect_same_run(folder.path / "d", folder.path / "whole");
     for (const char* name : {"steps.csv", "checkpoint.h5"})
         EXPECT_EQ(contents(folder.path / "d" / name), contents(folder.path / "whole" / name)) << name;
@@ -169,9 +169,9 @@ TEST(Resume, RefusesAnotherCase) {
          "b.toml: time.end: 0.0002 is past already: the run has reached 0.0004; a later one does"}};
     for (const auto& [text, complaint] : others) {
         write(folder.path / "b.toml", text);
-        const Outcome it = kropla_program(folder, "run b.toml --out whole --resume");
-        EXPECT_EQ(it.code, 2);
-        expect_one_line(it.err, complaint);
+        const Outcome ended = kropla_program(folder, "run b.toml --out whole --resume");
+        EXPECT_EQ(ended.code, 2);
+        expect_one_line(ended.err, complaint);
         EXPECT_EQ(read_table(folder.path / "whole/steps.csv").rows, 2u);
     }
 }
@@ -186,8 +186,8 @@ TEST(Resume, GoesOnToALaterEnd) {
     for (const std::string& text : {short_case(4), longer}) {
         ASSERT_EQ(kropla_program(folder, "run b.toml --out d").code, 0);
         write(folder.path / "c.toml", text);
-        const Outcome it = kropla_program(folder, "run c.toml --out d --resume");
-        EXPECT_EQ(it.code, 0) << it.err;
+        const Outcome ended = kropla_program(folder, "run c.toml --out d --resume");
+        EXPECT_EQ(ended.code, 0) << ended.err;
         expect_same_run(folder.path / "d", folder.path / "whole");
         EXPECT_EQ(kropla_program(folder, "run c.toml --out d --resume").code, 0);
         fs::remove_all(folder.path / "d");
@@ -212,9 +212,9 @@ TEST(Resume, RefusesADamagedCheckpoint) {
     run_whole(folder, short_case(2));
     const fs::path checkpoint = folder.path / "whole/checkpoint.h5";
     fs::resize_file(checkpoint, fs::file_size(checkpoint) / 2);
-    const Outcome it = kropla_program(folder, "run a.toml --out whole --resume");
-    EXPECT_EQ(it.code, 5);
-    expect_one_line(it.err, "checkpoint.h5: is truncated");
+    const Outcome ended = kropla_program(folder, "run a.toml --out whole --resume");
+    EXPECT_EQ(ended.code, 5);
+    expect_one_line(ended.err, "checkpoint.h5: is truncated");
 }
 
 }  // namespace

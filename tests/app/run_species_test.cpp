@@ -24,8 +24,8 @@ std::string drop_with_vapour(const std::string& more = "") {
 TEST(RunSpecies, WhatLeavesABodyIsInTheGasAndNothingIsLost) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", drop_with_vapour());
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const Table steps = read_table(folder.path / "d/steps.csv");
     const std::vector<double> amount = numbers(steps, "vapour_integral"), error = numbers(steps, "vapour_error"),
                               transfer = numbers(steps, "vapour_transfer_error");
@@ -60,9 +60,9 @@ TEST(RunSpecies, WhatIsWrongIsNamed) {
          "species[1].region (line 29): must name at least one region that the species is in"}};
     for (const auto& [text, refusal] : wrong) {
         write(folder.path / "a.toml", text);
-        const Outcome it = kropla_program(folder, "run a.toml --out d");
-        EXPECT_EQ(it.code, 2);
-        expect_one_line(it.err, "a.toml: " + refusal);
+        const Outcome ended = kropla_program(folder, "run a.toml --out d");
+        EXPECT_EQ(ended.code, 2);
+        expect_one_line(ended.err, "a.toml: " + refusal);
         EXPECT_FALSE(std::filesystem::exists(folder.path / "d"));
     }
 }

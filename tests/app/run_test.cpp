@@ -48,21 +48,21 @@ void expect_valid_so_far(const fs::path& run) {
 TEST(Run, LeavesFramesTableCheckpointAndReport) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(4));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
-    EXPECT_EQ(it.err, "");
-    EXPECT_TRUE(it.out.starts_with("a.toml: about ")) << it.out;
-    EXPECT_NE(it.out.find(" tets, 4 steps to 800 us, "), std::string::npos) << it.out;
-    const std::string steps_said = it.out.substr(opening_of(it.out));
-    EXPECT_EQ(std::ranges::count(steps_said, '\n'), 8) << it.out;  // a plain line per step, and the last four
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.err, "");
+    EXPECT_TRUE(ended.out.starts_with("a.toml: about ")) << ended.out;
+    EXPECT_NE(ended.out.find(" tets, 4 steps to 800 us, "), std::string::npos) << ended.out;
+    const std::string steps_said = ended.out.substr(opening_of(ended.out));
+    EXPECT_EQ(std::ranges::count(steps_said, '\n'), 8) << ended.out;  // a plain line per step, and the last four
     EXPECT_TRUE(std::regex_search(
-        it.out, std::regex("\ndone: 4 steps to 800 us in 0:\\d\\d, worst R/r [3-9]\\.\\d\n"
+        ended.out, std::regex("\ndone: 4 steps to 800 us in 0:\\d\\d, worst R/r [3-9]\\.\\d\n"
                            "droplet: 2,399\\.\\d+ K in the mean \\(2,400\\.0+ K at the start\\), gave off [\\d.]+ mJ, "
                            "now at \\(0\\.12, 0\\.00, 3\\.16\\) mm\n"
                            "energy: 56\\.3 J stored, kept to \\de-1\\d\n"
                            "see d/report\\.html, or paraview d/frames\\.pvd\n$")))
-        << it.out;
-    EXPECT_EQ(it.out.find('\r'), std::string::npos);
+        << ended.out;
+    EXPECT_EQ(ended.out.find('\r'), std::string::npos);
 
     const fs::path run = folder.path / "d";
     for (const char* file : {"bodies.csv", "case.toml", "report.html"}) EXPECT_GT(fs::file_size(run / file), 0u) << file;
@@ -142,8 +142,8 @@ TEST(Run, GivesTheSameBitsIfEveryStepIsRefusedOnceAndRedone) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(4));
     ASSERT_EQ(kropla_program(folder, "run a.toml --out once").code, 0);
-    const Outcome it = kropla_program(folder, "run a.toml --out redone --test-rollback");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run a.toml --out redone --test-rollback");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     expect_same_run(folder.path / "once", folder.path / "redone");
 }
 
@@ -176,8 +176,8 @@ TEST(Run, WritesFramesAsOftenAsAskedAndTheLast) {
 TEST(Run, CutsAStepThatTheMeshCannotTakeAndKeepsTheSum) {
     const TemporaryFolder folder;
     write(folder.path / "leap.toml", leaping_case());
-    const Outcome it = kropla_program(folder, "run leap.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run leap.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
     const Table steps = read_table(folder.path / "d/steps.csv");
     const auto time = numbers(steps, "time"), dt = numbers(steps, "dt"),
                attempts = numbers(steps, "attempts");
@@ -194,14 +194,14 @@ TEST(Run, CutsAStepThatTheMeshCannotTakeAndKeepsTheSum) {
 TEST(Run, EndsWithThreeWhereTheFloorsCannotBeKept) {
     const TemporaryFolder folder;
     write(folder.path / "land.toml", landing_case());
-    const Outcome it = kropla_program(folder, "run land.toml --out d");
-    EXPECT_EQ(it.code, 3) << it.err;
-    const std::size_t line = it.err.find('\n') + 1;
-    EXPECT_TRUE(it.err.starts_with(
+    const Outcome ended = kropla_program(folder, "run land.toml --out d");
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    const std::size_t line = ended.err.find('\n') + 1;
+    EXPECT_TRUE(ended.err.starts_with(
         "kropla: warning: at t = 1 ms body \"droplet\" is 0.000162 m from the wall z min, 0.27 "
         "of size.surface = 0.0006 m"))
-        << it.err;
-    const std::string said = it.err.substr(line);
+        << ended.err;
+    const std::string said = ended.err.substr(line);
     expect_one_line(said, "the mesh cannot go on from t = 9");
     expect_one_line(said, " us body \"droplet\" is ");
     expect_one_line(said, " m from the wall z min, ");
@@ -228,11 +228,11 @@ TEST(Run, LeavesAReportIfTheInitialMeshCannotBeMade) {
     std::string text = replaced(landing_case(), "-0.838*t", "0");
     text = replaced(replaced(text, "\"sphere\"", "\"slab\""), "centre = [0.0, 0.0, 0.002]", "min = [-1e-3, -1e-3, 0.002]");
     write(folder.path / "plate.toml", replaced(text, "radius = 0.001", "max = [1e-3, 1e-3, 0.00218]"));
-    const Outcome it = kropla_program(folder, "run plate.toml --out d");
-    EXPECT_EQ(it.code, 3) << it.err;
-    expect_one_line(it.err, "the initial mesh cannot be made: at t = 0 s ");
-    EXPECT_NE(it.err.find("0.00018 m thick at "), std::string::npos) << it.err;
-    EXPECT_NE(it.err.find("0.3 of size.least = 0.0006 m: too thin for the mesh; at most 0.00027 m would do"), std::string::npos) << it.err;
+    const Outcome ended = kropla_program(folder, "run plate.toml --out d");
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    expect_one_line(ended.err, "the initial mesh cannot be made: at t = 0 s ");
+    EXPECT_NE(ended.err.find("0.00018 m thick at "), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("0.3 of size.least = 0.0006 m: too thin for the mesh; at most 0.00027 m would do"), std::string::npos) << ended.err;
     const std::string page = contents(folder.path / "d/report.html");
     EXPECT_NE(page.find("Ended early: the initial mesh cannot be made: at t = 0 s "), std::string::npos);
     EXPECT_NE(page.find("Where it ended"), std::string::npos);
@@ -255,10 +255,10 @@ TEST(Run, SharesNoFolderForTemporaryFilesWithOtherRuns) {
     const char* before = std::getenv("TMPDIR");
     const std::string kept = before == nullptr ? "" : before;
     setenv("TMPDIR", (folder.path / "tmp").c_str(), 1);
-    const Outcome it = kropla_program(folder, "run case.toml --out d");
+    const Outcome ended = kropla_program(folder, "run case.toml --out d");
     if (before == nullptr) unsetenv("TMPDIR");
     else setenv("TMPDIR", kept.c_str(), 1);
-    EXPECT_EQ(it.code, 0) << it.err;
+    EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path / "tmp"), {}), 1);
 }
 
@@ -266,8 +266,8 @@ TEST(Run, SharesNoFolderForTemporaryFilesWithOtherRuns) {
 TEST(Run, KeepsAFloorThatIsHardToKeep) {
     const TemporaryFolder folder;
     write(folder.path / "hard.toml", leaping_case() + "[quality]\nmax_aspect_ratio = 5.3\n");
-    const Outcome it = kropla_program(folder, "run hard.toml --out d");
-    EXPECT_EQ(it.code, 0) << it.err;
+    const Outcome ended = kropla_program(folder, "run hard.toml --out d");
+    EXPECT_EQ(ended.code, 0) << ended.err;
     const Table steps = read_table(folder.path / "d/steps.csv");
     EXPECT_GT(steps.rows, 1u);
     expect_floors_kept(steps, 5.3);
@@ -276,9 +276,9 @@ TEST(Run, KeepsAFloorThatIsHardToKeep) {
 TEST(Run, EndsWithFourWhenTheSolverFails) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(3));
-    const Outcome it = kropla_program(folder, "run a.toml --out d -ksp_max_it 1");
-    EXPECT_EQ(it.code, 4);
-    expect_one_line(it.err, "did not converge");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d -ksp_max_it 1");
+    EXPECT_EQ(ended.code, 4);
+    expect_one_line(ended.err, "did not converge");
     expect_valid_so_far(folder.path / "d");
     EXPECT_NE(contents(folder.path / "d/report.html").find("Ended early at 0 s of "), std::string::npos);
     ASSERT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);  // with the usual options
@@ -291,9 +291,9 @@ TEST(Run, EndsWithTwoIfASourceStopsBeingANumber) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", replaced(short_case(3), "initial       = 2400.0",
                                            "initial = 2400.0\nsource = \"1e6*sqrt(5e-4 - t)\""));
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 2);
-    expect_one_line(it.err, "source");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 2);
+    expect_one_line(ended.err, "source");
     EXPECT_EQ(read_table(folder.path / "d/steps.csv").rows, 2u);
     expect_valid_so_far(folder.path / "d");
 }
@@ -304,9 +304,9 @@ TEST(Run, EndsWithFiveIfTheFolderCannotBeWritten) {
     write(folder.path / "file", "");
     for (const char* out : {"file/below", "/proc/nowhere"}) {
         SCOPED_TRACE(out);
-        const Outcome it = kropla_program(folder, std::string("run a.toml --out ") + out);
-        EXPECT_EQ(it.code, 5);
-        expect_one_line(it.err, out);
+        const Outcome ended = kropla_program(folder, std::string("run a.toml --out ") + out);
+        EXPECT_EQ(ended.code, 5);
+        expect_one_line(ended.err, out);
     }
 }
 
@@ -314,9 +314,9 @@ TEST(Run, EndsWithFiveIfAFrameCannotBeWritten) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", short_case(3));
     fs::create_directories(folder.path / "d/frames/00002.vtu");  // in the frame's place
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    EXPECT_EQ(it.code, 5);
-    expect_one_line(it.err, "d/frames/00002.vtu: cannot be written");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 5);
+    expect_one_line(ended.err, "d/frames/00002.vtu: cannot be written");
     fs::remove(folder.path / "d/frames/00002.vtu");
     EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
     ASSERT_EQ(kropla_program(folder, "run a.toml --out whole").code, 0);
@@ -331,9 +331,9 @@ TEST(Run, EndsWithFiveIfTheDiskIsFull) {
     HeldProgram program(folder, {"run", "a.toml", "--out", "d"}, 1, opening_of(before.out));
     ASSERT_TRUE(program.reaches("d", 1));
     program.let_files_grow_to(25000);  // [bytes] enough for the table and not for a frame
-    const Outcome it = program.finish();
-    EXPECT_EQ(it.code, 5);
-    expect_one_line(it.err, "cannot be written");
+    const Outcome ended = program.finish();
+    EXPECT_EQ(ended.code, 5);
+    expect_one_line(ended.err, "cannot be written");
     EXPECT_EQ(kropla_program(folder, "run a.toml --out d --resume").code, 0);
     expect_same_run(folder.path / "d", folder.path / "whole");
 }
@@ -346,9 +346,9 @@ TEST(Run, ABodyComesDownToAHairAboveTheFloor) {
           "[[body]]\nname = \"drop\"\nshape = \"sphere\"\ncentre = [0, 0, 0.0013]\nradius = 0.001\n"
           "[body.motion]\nz = \"-0.14*t\"\n[size]\nsurface = 0.0004\ngrowth = 0.2\nfar = 0.0008\n"
           "[time]\nend = 0.002\nsteps = 3\n");
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
-    EXPECT_EQ(it.err, "");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.err, "");
     const auto columns = lasting_columns(folder.path / "d");
     for (const std::string& ratio : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(ratio), 6);
     for (const std::string& volume : columns.at("volume_drop"))
@@ -368,9 +368,9 @@ TEST(Run, TwoBodiesPassAtAFifthOfASurfaceSize) {
               body("a", "-0.001", "0.0044", "-t") + body("b", "0.00106", "0.0036", "t") +
               "[heat.region.surroundings]\nconductivity = 0.02\ndensity = 1.6\nspecific_heat = 520\ninitial = 300\n"
               "[size]\nsurface = 3e-4\ngrowth = 0.3\nfar = 1e-3\n[time]\nend = 5e-4\nsteps = 4\n");
-    const Outcome it = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(it.code, 0) << it.err;
-    EXPECT_EQ(it.err, "");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.err, "");
     const auto columns = lasting_columns(folder.path / "d");
     for (const std::string& ratio : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(ratio), 6.6);
     for (const std::string& error : columns.at("energy_transfer_error")) EXPECT_LE(std::abs(std::stod(error)), 1e-12);

@@ -27,18 +27,18 @@ TEST(StepsTable, HasNamesAndUnits) {
 }
 
 TEST(StepRow, HasTheColumnsThatReadersKnow) {
-    Case it;
-    it.domain.bodies.resize(1);
-    it.domain.bodies[0].name = "a drop, left";
-    EXPECT_EQ(csv_header(step_row(1, {}, {}, {}, it)),
+    Case given;
+    given.domain.bodies.resize(1);
+    given.domain.bodies[0].name = "a drop, left";
+    EXPECT_EQ(csv_header(step_row(1, {}, {}, {}, given)),
               "step,time [s],dt [s],attempts,vertices,tets,prisms,max_aspect_ratio,p999_aspect_ratio,"
               "min_dihedral [deg],max_dihedral [deg],smoothing_sweeps,swaps,splits,collapses,local_remeshes,"
               "largest_ring,global_remeshes,given_up,touched_fraction,kept_vertices,kept_tets,mesh_seconds [s],"
               "simulate_seconds [s],transfer_seconds [s],mesh_cpu_seconds [s],transferred_fraction,"
               "x_a_drop__left [m],y_a_drop__left [m],z_a_drop__left [m],u_a_drop__left [m/s],v_a_drop__left [m/s],"
               "w_a_drop__left [m/s],volume_a_drop__left [m^3],area_a_drop__left [m^2]");
-    it.heat.emplace();
-    EXPECT_TRUE(csv_header(step_row(1, {}, {}, {}, it))
+    given.heat.emplace();
+    EXPECT_TRUE(csv_header(step_row(1, {}, {}, {}, given))
                     .ends_with(",temperature_min_a_drop__left [K],temperature_mean_a_drop__left [K],"
                                "temperature_max_a_drop__left [K],heat_from_a_drop__left [W],"
                                "energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited [K],"
@@ -48,10 +48,10 @@ TEST(StepRow, HasTheColumnsThatReadersKnow) {
 }
 
 TEST(StepRow, HasTheFiguresOfTheStep) {
-    Case it;
-    it.domain.bodies.resize(1);
-    it.domain.bodies[0].name = "b";
-    it.heat.emplace();
+    Case given;
+    given.domain.bodies.resize(1);
+    given.domain.bodies[0].name = "b";
+    given.heat.emplace();
     StepReport report;
     report.mesh.time = 2;
     report.mesh.dt = 0.5;
@@ -65,7 +65,7 @@ TEST(StepRow, HasTheFiguresOfTheStep) {
     report.heat.balance.sources = {0.25, 0.5};
     report.bodies = {{.place = {1, 2, 3}, .mean = 300}};
     report.velocities = {{4, 5, 6}};
-    const StepRow row = step_row(3, report, {}, {.tets = 8, .worst = {}}, it);
+    const StepRow row = step_row(3, report, {}, {.tets = 8, .worst = {}}, given);
     const auto value = [&](std::string_view column) {
         return std::ranges::find(row, column, &Figure::column)->value;
     };

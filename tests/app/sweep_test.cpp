@@ -25,12 +25,12 @@ using Cells = std::vector<std::string>;
 TEST(Sweep, RunsAllAndComparesThem) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", case_of_speed(2));
-    const Outcome it = kropla_program(folder, "sweep a.toml --set speed=0.5,0.8 --out s");
-    EXPECT_EQ(it.code, 0) << it.err;
-    EXPECT_EQ(it.err, "");
-    EXPECT_TRUE(it.out.starts_with("a.toml: 2 runs into s\nrun 1/2  speed=0.5  done in 0:0")) << it.out;
-    EXPECT_NE(it.out.find("\ndone: 2 runs in 0:0"), std::string::npos) << it.out;
-    EXPECT_TRUE(it.out.ends_with("; see s/sweep.html\n")) << it.out;
+    const Outcome ended = kropla_program(folder, "sweep a.toml --set speed=0.5,0.8 --out s");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(ended.err, "");
+    EXPECT_TRUE(ended.out.starts_with("a.toml: 2 runs into s\nrun 1/2  speed=0.5  done in 0:0")) << ended.out;
+    EXPECT_NE(ended.out.find("\ndone: 2 runs in 0:0"), std::string::npos) << ended.out;
+    EXPECT_TRUE(ended.out.ends_with("; see s/sweep.html\n")) << ended.out;
 
     const Table table = read_table(folder.path / "s/sweep.csv");
     EXPECT_EQ(column(table, "run"), (Cells{"speed=0.5", "speed=0.8"}));
@@ -56,9 +56,9 @@ TEST(Sweep, DoesNotRunAgainWhatIsComplete) {
     const std::string steps = contents(folder.path / "s/speed=0.8/steps.csv");
     const std::string log = contents(folder.path / "s/speed=0.8/run.log");
     const Cells seconds = column(read_table(folder.path / "s/sweep.csv"), "wall_seconds");
-    const Outcome it = kropla_program(folder, "sweep a.toml --set speed=0.8,0.7 --out s");
-    EXPECT_EQ(it.code, 0) << it.err;
-    EXPECT_NE(it.out.find("\nrun 1/2  speed=0.8  done before\nrun 2/2  speed=0.7  done in"), std::string::npos) << it.out;
+    const Outcome ended = kropla_program(folder, "sweep a.toml --set speed=0.8,0.7 --out s");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("\nrun 1/2  speed=0.8  done before\nrun 2/2  speed=0.7  done in"), std::string::npos) << ended.out;
     EXPECT_EQ(contents(folder.path / "s/speed=0.8/steps.csv"), steps);
     EXPECT_EQ(contents(folder.path / "s/speed=0.8/run.log"), log);
     const Table table = read_table(folder.path / "s/sweep.csv");
@@ -69,11 +69,11 @@ TEST(Sweep, DoesNotRunAgainWhatIsComplete) {
 TEST(Sweep, TellsOfAFailedRunAndGoesOn) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", case_of_speed(2));
-    const Outcome it = kropla_program(folder, "sweep a.toml --set speed=50,0.8 --out s");
-    EXPECT_EQ(it.code, 2);
-    expect_one_line(it.err, "s/speed=50: a.toml: body \"droplet\": motion takes it out of the box");
-    EXPECT_NE(it.out.find("run 1/2  speed=50   failed in 0:0"), std::string::npos) << it.out;
-    EXPECT_NE(it.out.find("\n1 of 2 runs are done, in 0:0"), std::string::npos) << it.out;
+    const Outcome ended = kropla_program(folder, "sweep a.toml --set speed=50,0.8 --out s");
+    EXPECT_EQ(ended.code, 2);
+    expect_one_line(ended.err, "s/speed=50: a.toml: body \"droplet\": motion takes it out of the box");
+    EXPECT_NE(ended.out.find("run 1/2  speed=50   failed in 0:0"), std::string::npos) << ended.out;
+    EXPECT_NE(ended.out.find("\n1 of 2 runs are done, in 0:0"), std::string::npos) << ended.out;
     const Table table = read_table(folder.path / "s/sweep.csv");
     EXPECT_EQ(column(table, "exit_code"), (Cells{"2", "0"}));
     EXPECT_EQ(column(table, "step"), (Cells{"", "2"}));
@@ -94,8 +94,8 @@ TEST(Sweep, GoesOnWhereItWasInterrupted) {
     EXPECT_EQ(column(read_table(folder.path / "s/sweep.csv"), "exit_code"), Cells{"130"});
     EXPECT_FALSE(fs::exists(folder.path / "s/speed=0.1"));
 
-    const Outcome it = kropla_program(folder, "sweep a.toml --set speed=0.2,0.1 --out s");
-    EXPECT_EQ(it.code, 0) << it.out << it.err;
+    const Outcome ended = kropla_program(folder, "sweep a.toml --set speed=0.2,0.1 --out s");
+    EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
     EXPECT_NE(contents(folder.path / "s/speed=0.2/run.log").find("goes on after step "), std::string::npos);
     EXPECT_EQ(column(read_table(folder.path / "s/sweep.csv"), "exit_code"), (Cells{"0", "0"}));
     EXPECT_EQ(kropla_program(folder, "run a.toml --out alone --set speed=0.2").code, 0);
@@ -106,10 +106,10 @@ TEST(Sweep, IsRefusedBeforeAnythingIsRun) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", case_of_speed(2));
     const auto refused = [&](const std::string& words) {
-        const Outcome it = kropla_program(folder, "sweep a.toml " + words);
-        EXPECT_EQ(it.code, 2);
-        EXPECT_EQ(it.out, "");
-        return it.err;
+        const Outcome ended = kropla_program(folder, "sweep a.toml " + words);
+        EXPECT_EQ(ended.code, 2);
+        EXPECT_EQ(ended.out, "");
+        return ended.err;
     };
     EXPECT_EQ(refused("--set sped=1,2 --out s"),
               "kropla: --set sped=1: the case has no such parameter or key; did you mean \"speed\"? (in the run sped=1)\n");

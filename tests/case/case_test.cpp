@@ -68,44 +68,44 @@ void expect_same(const Case& a, const Case& b) {
 }
 
 TEST(ReadCase, EveryKeyArrives) {
-    const Case it = parse_case(full_case, "full.toml");
-    expect_same(it.domain.box.min, {-0.004, -0.004, 0});
-    ASSERT_EQ(it.domain.bodies.size(), 2u);
-    expect_same(it.domain.bodies[0].motion(0.002).displacement,
+    const Case given = parse_case(full_case, "full.toml");
+    expect_same(given.domain.box.min, {-0.004, -0.004, 0});
+    ASSERT_EQ(given.domain.bodies.size(), 2u);
+    expect_same(given.domain.bodies[0].motion(0.002).displacement,
                 {0.0003 * std::sin(4 * 3.14159265358979323846 * 0.002 / 0.01), 0, -0.002});
-    expect_same(it.domain.bodies[1].motion(0.002).displacement, {0, 0, 0});
-    expect_same(it.domain.bodies[1].shape.semi_axes, {1e-3, 0.8e-3, 0.7e-3});
-    EXPECT_FALSE(it.domain.bodies[1].shape.orientation.axes[0] == Vec3(1, 0, 0));  // it was turned
-    EXPECT_EQ(it.domain.size.growth, 0.15);
-    EXPECT_EQ(it.quality.max_aspect_ratio, 9.5);
-    EXPECT_EQ(it.time.steps, 40);
-    ASSERT_TRUE(it.heat);
-    EXPECT_EQ(it.heat->regions[0].carried, Carried::at_rest);
-    EXPECT_EQ(it.heat->regions[1].carried, Carried::with_mesh);
-    EXPECT_EQ(it.heat->regions[1].source({1e-3, 0.5, 0.25}, 2), 1e6 * 1e-3 * 2 + 0.5 - 0.25);
-    EXPECT_FALSE(it.heat->regions[2].source);
-    EXPECT_EQ(it.heat->faces[0].kind, HeatFace::Kind::value);
-    EXPECT_EQ(it.heat->faces[0].quantity({}, 1), 300);
-    EXPECT_EQ(it.heat->faces[3].kind, HeatFace::Kind::flux);
-    EXPECT_EQ(it.heat->faces[3].quantity({}, 0.5), 1e4 * std::sin(0.5));
-    EXPECT_EQ(it.heat->faces[1].kind, HeatFace::Kind::insulated);
-    EXPECT_EQ(it.output.every, 5);
-    EXPECT_EQ(it.random.seed, 9223372036854775807u);
+    expect_same(given.domain.bodies[1].motion(0.002).displacement, {0, 0, 0});
+    expect_same(given.domain.bodies[1].shape.semi_axes, {1e-3, 0.8e-3, 0.7e-3});
+    EXPECT_FALSE(given.domain.bodies[1].shape.orientation.axes[0] == Vec3(1, 0, 0));  // it was turned
+    EXPECT_EQ(given.domain.size.growth, 0.15);
+    EXPECT_EQ(given.quality.max_aspect_ratio, 9.5);
+    EXPECT_EQ(given.time.steps, 40);
+    ASSERT_TRUE(given.heat);
+    EXPECT_EQ(given.heat->regions[0].carried, Carried::at_rest);
+    EXPECT_EQ(given.heat->regions[1].carried, Carried::with_mesh);
+    EXPECT_EQ(given.heat->regions[1].source({1e-3, 0.5, 0.25}, 2), 1e6 * 1e-3 * 2 + 0.5 - 0.25);
+    EXPECT_FALSE(given.heat->regions[2].source);
+    EXPECT_EQ(given.heat->faces[0].kind, HeatFace::Kind::value);
+    EXPECT_EQ(given.heat->faces[0].quantity({}, 1), 300);
+    EXPECT_EQ(given.heat->faces[3].kind, HeatFace::Kind::flux);
+    EXPECT_EQ(given.heat->faces[3].quantity({}, 0.5), 1e4 * std::sin(0.5));
+    EXPECT_EQ(given.heat->faces[1].kind, HeatFace::Kind::insulated);
+    EXPECT_EQ(given.output.every, 5);
+    EXPECT_EQ(given.random.seed, 9223372036854775807u);
 }
 
 TEST(ReadCase, WhatIsLeftOutHasItsDefault) {
-    const Case it = parse_case(
+    const Case given = parse_case(
         "[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[size]\nsurface = 0.1\nfar = 0.2\n"
         "[time]\nend = 1\nsteps = 2\n",
         "least.toml");
-    EXPECT_TRUE(it.domain.bodies.empty());
-    EXPECT_FALSE(it.heat);
-    EXPECT_EQ(it.domain.size.growth, 0.1);
-    EXPECT_EQ(it.quality.max_aspect_ratio, 10);
-    EXPECT_EQ(it.output.every, 1);
-    EXPECT_EQ(it.random.seed, 1u);
-    EXPECT_NE(to_toml(it).find("max_aspect_ratio = 10\n"), std::string::npos);
-    EXPECT_NE(to_toml(it).find("every = 1\n"), std::string::npos);
+    EXPECT_TRUE(given.domain.bodies.empty());
+    EXPECT_FALSE(given.heat);
+    EXPECT_EQ(given.domain.size.growth, 0.1);
+    EXPECT_EQ(given.quality.max_aspect_ratio, 10);
+    EXPECT_EQ(given.output.every, 1);
+    EXPECT_EQ(given.random.seed, 1u);
+    EXPECT_NE(to_toml(given).find("max_aspect_ratio = 10\n"), std::string::npos);
+    EXPECT_NE(to_toml(given).find("every = 1\n"), std::string::npos);
 }
 
 TEST(ReadCase, TheMethodIsOursOrThePapers) {
@@ -124,32 +124,32 @@ TEST(ReadCase, TheMethodIsOursOrThePapers) {
 
 TEST(WriteCase, KeepsTheMethod) {
     for (const std::string method : {"method = \"kropla\"", "method = \"paper\"\nweights = [0.5, 1]"}) {
-        const Case it = parse_case(replaced(full_case, "max_aspect_ratio = 9.5", method), "case.toml");
-        EXPECT_NE(to_toml(it).find(method), std::string::npos);
-        expect_same(parse_case(to_toml(it), "written.toml"), it);
+        const Case given = parse_case(replaced(full_case, "max_aspect_ratio = 9.5", method), "case.toml");
+        EXPECT_NE(to_toml(given).find(method), std::string::npos);
+        expect_same(parse_case(to_toml(given), "written.toml"), given);
     }
 }
 
 TEST(WriteCase, ReadsAsTheSameCaseAgain) {
-    const Case it = parse_case(full_case, "full.toml");
-    const std::string written = to_toml(it);
+    const Case given = parse_case(full_case, "full.toml");
+    const std::string written = to_toml(given);
     SCOPED_TRACE(written);
     const Case again = parse_case(written, "written.toml");
-    expect_same(it, again);
+    expect_same(given, again);
     EXPECT_EQ(to_toml(again), written);
     EXPECT_NE(written.find("x = \"0.0003*sin(4*pi*t/0.01)\""), std::string::npos);  // as the user wrote it
     EXPECT_NE(written.find("y_max = { flux = \"1e4*sin(t)\" }"), std::string::npos);
 }
 
 TEST(WriteCase, KeepsEveryBitOfANumber) {
-    Case it = parse_case(full_case, "full.toml");
-    it.domain.size.surface = 0.1 + 0.2e-16;
-    it.domain.size.far = 1.0 / 3.0;
-    it.time.end = 123456789.123456789e-300;
-    const Case again = parse_case(to_toml(it), "written.toml");
-    EXPECT_EQ(again.domain.size.surface, it.domain.size.surface);
-    EXPECT_EQ(again.domain.size.far, it.domain.size.far);
-    EXPECT_EQ(again.time.end, it.time.end);
+    Case given = parse_case(full_case, "full.toml");
+    given.domain.size.surface = 0.1 + 0.2e-16;
+    given.domain.size.far = 1.0 / 3.0;
+    given.time.end = 123456789.123456789e-300;
+    const Case again = parse_case(to_toml(given), "written.toml");
+    EXPECT_EQ(again.domain.size.surface, given.domain.size.surface);
+    EXPECT_EQ(again.domain.size.far, given.domain.size.far);
+    EXPECT_EQ(again.time.end, given.time.end);
 }
 
 TEST(Cases, OfTheProjectAreRight) {
@@ -157,23 +157,23 @@ TEST(Cases, OfTheProjectAreRight) {
     for (const auto& entry : std::filesystem::directory_iterator(KROPLA_CASES)) {
         if (entry.path().extension() != ".toml") continue;
         SCOPED_TRACE(entry.path().string());
-        const Case it = read_case(entry.path());
-        EXPECT_TRUE(foresee(it).empty());
-        expect_same(it, parse_case(to_toml(it), "written.toml"));
+        const Case given = read_case(entry.path());
+        EXPECT_TRUE(foresee(given).empty());
+        expect_same(given, parse_case(to_toml(given), "written.toml"));
         ++read;
     }
     EXPECT_GE(read, 7);
 }
 
 TEST(Cases, TheTwoDropletsPassAtHalfARadius) {
-    const Case it = read_case(std::filesystem::path(KROPLA_CASES) / "two_droplets.toml");
+    const Case given = read_case(std::filesystem::path(KROPLA_CASES) / "two_droplets.toml");
     double least = 1;
     for (int i = 0; i <= 1000; ++i) {
-        const double t = it.time.end * i / 1000;
-        const Shape a = shape_at(it.domain.bodies[0], t), b = shape_at(it.domain.bodies[1], t);
+        const double t = given.time.end * i / 1000;
+        const Shape a = shape_at(given.domain.bodies[0], t), b = shape_at(given.domain.bodies[1], t);
         least = std::min(least, distance(a.centre, b.centre) - a.semi_axes.x - b.semi_axes.x);
     }
-    EXPECT_NEAR(least, 0.5 * it.domain.bodies[0].shape.semi_axes.x, 1e-12);
+    EXPECT_NEAR(least, 0.5 * given.domain.bodies[0].shape.semi_axes.x, 1e-12);
 }
 
 TEST(Cases, TheLayeredDropletsPassTheWallAndEachOtherAtThreeTenthsOfARadius) {
@@ -188,8 +188,8 @@ TEST(Cases, TheLayeredDropletsPassTheWallAndEachOtherAtThreeTenthsOfARadius) {
     }
     EXPECT_NEAR(to_wall, 0.3e-3, 1e-12);
     EXPECT_NEAR(to_other, 0.3e-3, 1e-12);
-    for (const Case& it : {wall, miss, case_named("droplet_layer.toml"), case_named("tumbling.toml")})
-        for (const Body& body : it.domain.bodies) EXPECT_TRUE(body.layer);
+    for (const Case& given : {wall, miss, case_named("droplet_layer.toml"), case_named("tumbling.toml")})
+        for (const Body& body : given.domain.bodies) EXPECT_TRUE(body.layer);
 }
 
 TEST(Estimate, CountsWhatAUniformSizeGives) {

@@ -32,13 +32,13 @@ viscosity = 0.05
 )";
 
 TEST(CaseContact, HasDefaults) {
-    const Case it = parse_case(text, "case.toml");
-    ASSERT_TRUE(it.contact);
-    EXPECT_TRUE(it.contact->lubrication);
-    EXPECT_EQ(it.contact->restitution, 0);
-    EXPECT_EQ(it.contact->reach, 0.06);
+    const Case given = parse_case(text, "case.toml");
+    ASSERT_TRUE(given.contact);
+    EXPECT_TRUE(given.contact->lubrication);
+    EXPECT_EQ(given.contact->restitution, 0);
+    EXPECT_EQ(given.contact->reach, 0.06);
     // A quarter more than the limit, and what the triangles of so coarse a sphere stand out.
-    EXPECT_NEAR(it.contact->gap, 1.25 * doubtful_gap(10) * 0.12 + 0.15 * 0.12 * 0.12 / 0.15, 1e-15);
+    EXPECT_NEAR(given.contact->gap, 1.25 * doubtful_gap(10) * 0.12 + 0.15 * 0.12 * 0.12 / 0.15, 1e-15);
     EXPECT_FALSE(parse_case(replaced(text, "[contact]\n", ""), "case.toml").contact);
 }
 

@@ -182,13 +182,13 @@ TEST(Foresight, AsksForMixedUnits) {
 TEST(Foresight, NoEstimateIsInfinite) {
     for (double scale : {1e-15, 1e-9, 1.0, 1e6, 1e12})
         for (double share : {1.0, 1e-4, 1e-9}) {
-            Case it = parse_case(std::string(full_case), "case.toml");
-            it.domain.box.min *= scale;
-            it.domain.box.max *= scale;
-            it.domain.bodies.clear();
-            it.domain.size = {3e-4 * scale * share, 0.1, 7e-4 * scale};
-            EXPECT_TRUE(std::isfinite(estimate_tets(it.domain)));
-            EXPECT_GT(estimate_tets(it.domain), 0);
+            Case given = parse_case(std::string(full_case), "case.toml");
+            given.domain.box.min *= scale;
+            given.domain.box.max *= scale;
+            given.domain.bodies.clear();
+            given.domain.size = {3e-4 * scale * share, 0.1, 7e-4 * scale};
+            EXPECT_TRUE(std::isfinite(estimate_tets(given.domain)));
+            EXPECT_GT(estimate_tets(given.domain), 0);
         }
 }
 

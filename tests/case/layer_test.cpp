@@ -27,16 +27,16 @@ std::string refusal(std::string_view lines) {
     return "";
 }
 
-LayerOptions layer_of(const Case& it) { return it.domain.bodies[1].layer.value(); }
+LayerOptions layer_of(const Case& given) { return given.domain.bodies[1].layer.value(); }
 
 TEST(LayerInCase, EveryKeyArrives) {
-    const Case it = with("[body.layer]\ncount = 3\nfirst_height = 1e-5\ngrowth = 1.2\nside = \"both\"\nmin_gap = 4e-5\n");
-    EXPECT_FALSE(it.domain.bodies[0].layer);
-    EXPECT_EQ(layer_of(it).count, 3);
-    EXPECT_EQ(layer_of(it).first_height, 1e-5);
-    EXPECT_EQ(layer_of(it).growth, 1.2);
-    EXPECT_EQ(layer_of(it).side, LayerOptions::Side::both);
-    EXPECT_EQ(least_gap(layer_of(it)), 4e-5);
+    const Case given = with("[body.layer]\ncount = 3\nfirst_height = 1e-5\ngrowth = 1.2\nside = \"both\"\nmin_gap = 4e-5\n");
+    EXPECT_FALSE(given.domain.bodies[0].layer);
+    EXPECT_EQ(layer_of(given).count, 3);
+    EXPECT_EQ(layer_of(given).first_height, 1e-5);
+    EXPECT_EQ(layer_of(given).growth, 1.2);
+    EXPECT_EQ(layer_of(given).side, LayerOptions::Side::both);
+    EXPECT_EQ(least_gap(layer_of(given)), 4e-5);
 }
 
 TEST(LayerInCase, WhatIsLeftOutHasItsDefault) {
@@ -50,16 +50,16 @@ TEST(LayerInCase, WhatIsLeftOutHasItsDefault) {
 
 TEST(LayerInCase, IsWrittenAsItIsRun) {
     for (const char* side : {"outside", "inside", "both"}) {
-        const Case it = with("[body.layer]\ncount = 2\nside = \"" + std::string(side) + "\"\n");
-        const std::string written = to_toml(it);
+        const Case given = with("[body.layer]\ncount = 2\nside = \"" + std::string(side) + "\"\n");
+        const std::string written = to_toml(given);
         SCOPED_TRACE(written);
         const Case again = parse_case(written, "written.toml");
         EXPECT_FALSE(again.domain.bodies[0].layer);
         EXPECT_EQ(layer_of(again).count, 2);
         EXPECT_EQ(layer_of(again).first_height, 2e-5);
         EXPECT_EQ(layer_of(again).growth, 1.3);
-        EXPECT_EQ(layer_of(again).side, layer_of(it).side);
-        EXPECT_EQ(least_gap(layer_of(again)), least_gap(layer_of(it)));
+        EXPECT_EQ(layer_of(again).side, layer_of(given).side);
+        EXPECT_EQ(least_gap(layer_of(again)), least_gap(layer_of(given)));
         EXPECT_EQ(to_toml(again), written);
     }
 }
@@ -101,26 +101,26 @@ TEST(LayerInCase, AGrowthThatOverflowsIsRefusedWithTheLargestThatWouldDo) {
 }
 
 TEST(RotationInCase, TurnsTheBodyAboutItsCentre) {
-    const Case it = with("[body.motion]\nz = \"t\"\nangle = \"90*t\"\naxis = [0, 0, 2]\n");
-    const Pose pose = it.domain.bodies[1].motion(1);
+    const Case given = with("[body.motion]\nz = \"t\"\nangle = \"90*t\"\naxis = [0, 0, 2]\n");
+    const Pose pose = given.domain.bodies[1].motion(1);
     EXPECT_NEAR(norm(rotated(pose.rotation, {1, 0, 0}) - Vec3{0, 1, 0}), 0, 1e-15);
     EXPECT_TRUE(pose.displacement == Vec3(0, 0, 1));
-    const Shape turned = shape_at(it.domain.bodies[1], 1);
+    const Shape turned = shape_at(given.domain.bodies[1], 1);
     EXPECT_NEAR(norm(turned.centre - Vec3{0, 0, 1.003}), 0, 1e-15);
     EXPECT_NEAR(norm(rotated(turned.orientation, {1, 0, 0}) - Vec3{0, 1, 0}), 0, 1e-15);
-    const Pose at_start = it.domain.bodies[1].motion(0);
+    const Pose at_start = given.domain.bodies[1].motion(0);
     EXPECT_TRUE(rotated(at_start.rotation, {1, 2, 3}) == Vec3(1, 2, 3));
 }
 
 TEST(RotationInCase, TheAxisMayBeOfExpressionsAndIsWrittenAsItStands) {
-    const Case it = with("[body.motion]\nangle = 30\naxis = [\"cos(t)\", 0.5, \"t\"]\n");
-    const std::string written = to_toml(it);
+    const Case given = with("[body.motion]\nangle = 30\naxis = [\"cos(t)\", 0.5, \"t\"]\n");
+    const std::string written = to_toml(given);
     SCOPED_TRACE(written);
     EXPECT_NE(written.find("angle = 30\naxis = [\"cos(t)\", 0.5, \"t\"]\n"), std::string::npos);
     const Case again = parse_case(written, "written.toml");
     EXPECT_EQ(to_toml(again), written);
     const Rotation expected = rotation_about({std::cos(0.7), 0.5, 0.7}, 30 * std::numbers::pi / 180);
-    for (const Case* one : {&it, &again})
+    for (const Case* one : {&given, &again})
         for (std::size_t i = 0; i < 3; ++i)
             EXPECT_TRUE(one->domain.bodies[1].motion(0.7).rotation.axes[i] == expected.axes[i]);
 }
@@ -142,9 +142,9 @@ TEST(RotationInCase, WrongValuesAreRefused) {
 }
 
 TEST(RotationInCase, AnAxisThatVanishesOnTheWayIsFound) {
-    const Case it = with("[body.motion]\nangle = 3\naxis = [\"0.005-t\", 0, 0]\n");
+    const Case given = with("[body.motion]\nangle = 3\naxis = [\"0.005-t\", 0, 0]\n");
     const auto look_until = [&](double end) {
-        return look_at_paths(it.domain, {.start = 0, .end = end, .steps = 10, .also_at = {}}).closest.size();
+        return look_at_paths(given.domain, {.start = 0, .end = end, .steps = 10, .also_at = {}}).closest.size();
     };
     EXPECT_THROW((void)look_until(0.005), DomainError);
     EXPECT_EQ(look_until(0.0049), 0U);

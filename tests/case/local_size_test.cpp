@@ -52,10 +52,10 @@ std::string refusal_of(const Ask& ask) {
 }
 
 TEST(LocalSize, IsReadWithTheMostOnTheSurfacesAtTheStart) {
-    const Case it = parse_case(std::string(two_balls), "case.toml");
-    EXPECT_NEAR(*it.domain.bodies[0].size, 0.13, 0.002);
-    EXPECT_NEAR(it.domain.size.surface, 0.09, 0.002);
-    const Snapshot at = snapshot(it.domain, 0);
+    const Case given = parse_case(std::string(two_balls), "case.toml");
+    EXPECT_NEAR(*given.domain.bodies[0].size, 0.13, 0.002);
+    EXPECT_NEAR(given.domain.size.surface, 0.09, 0.002);
+    const Snapshot at = snapshot(given.domain, 0);
     EXPECT_NEAR(surface_size(at, 0, {0.2, 0.5, 0.5}), 0.05, 1e-15);
     EXPECT_NEAR(surface_size(at, 1, {1.5, 0.5, 1}), 0.09, 0.002);
     EXPECT_NEAR(surface_size(at, 1, {2, 0.5, 0.5}), 0.07, 1e-15);
@@ -84,18 +84,18 @@ TEST(LocalSize, RefusalsNameKeyLineAndPlace) {
 }
 
 TEST(LocalSize, OnTheWayItIsAskedForWhereTheBodyIs) {
-    Case it = parse_case(replaced(two_balls, "fine + 0.2*(x - 0.3)", "0.13 - 0.18*max(x - 0.5, 0)"), "case.toml");
-    const Snapshot later = snapshot(it.domain, 1);
+    Case given = parse_case(replaced(two_balls, "fine + 0.2*(x - 0.3)", "0.13 - 0.18*max(x - 0.5, 0)"), "case.toml");
+    const Snapshot later = snapshot(given.domain, 1);
     EXPECT_NEAR(surface_size(later, 0, {1, 0.5, 0.5}), 0.13 - 0.18 * 0.3, 1e-15);
-    it = parse_case(replaced(two_balls, "fine + 0.2*(x - 0.3)", "0.1*(x < 0.75)"), "case.toml");
-    EXPECT_EQ(refusal_of([&] { (void)surface_size(snapshot(it.domain, 1), 0, {1, 0.5, 0.5}); }),
+    given = parse_case(replaced(two_balls, "fine + 0.2*(x - 0.3)", "0.1*(x < 0.75)"), "case.toml");
+    EXPECT_EQ(refusal_of([&] { (void)surface_size(snapshot(given.domain, 1), 0, {1, 0.5, 0.5}); }),
               "case.toml: body[0].size (line 11): must be a positive length everywhere, but is 0 m at (0.8, 0.5, 0.5) m");
 }
 
 // The mean edge of the surface on either side, by the size there.
 TEST(LocalSize, TheInitialMeshHasIt) {
-    const Case it = parse_case(std::string(two_balls), "case.toml");
-    const Mesh mesh = initial_mesh(it.domain, 1);
+    const Case given = parse_case(std::string(two_balls), "case.toml");
+    const Mesh mesh = initial_mesh(given.domain, 1);
     double sum = 0, count = 0;
     for (const Tet t : all_tets(mesh, Region(1)))
         for (int corner = 0; corner < 4; ++corner) {
@@ -109,7 +109,7 @@ TEST(LocalSize, TheInitialMeshHasIt) {
             }
         }
     EXPECT_NEAR(sum / count, 1, 0.05);
-    EXPECT_NEAR(estimate_tets(it.domain) / count_tets(mesh), 1, 0.2);
+    EXPECT_NEAR(estimate_tets(given.domain) / count_tets(mesh), 1, 0.2);
 }
 
 }  // namespace

@@ -28,21 +28,21 @@ const std::string parameters = "[parameters]\nspeed = 3\nd = \"2*r\"\nr = 1e-3\n
 std::string refused(const std::string& lines) { return refusal(std::string(full_case) + "[parameters]\n" + lines); }
 
 TEST(Parameters, AreKnownToAllExpressions) {
-    const Case it = parse_case(with_parameters(parameters), "case.toml");
-    EXPECT_EQ(it.domain.bodies[0].shape.semi_axes.x, 1e-3);
-    EXPECT_EQ(it.domain.bodies[0].shape.centre.z, 0.01);
-    EXPECT_EQ(it.domain.bodies[0].motion(0.5).displacement.z, -1.5);
-    EXPECT_EQ(it.time.steps, 40);
-    EXPECT_EQ(it.heat->regions[0].material.conductivity, 0.06);
-    EXPECT_EQ(it.heat->regions[1].source({2, 0, 0}, 0.5), 1e6 + 3);
-    ASSERT_EQ(it.parameters.size(), 4u);
-    EXPECT_EQ(it.parameters[1].name, "d");
-    EXPECT_EQ(it.parameters[1].value, 2e-3);
+    const Case given = parse_case(with_parameters(parameters), "case.toml");
+    EXPECT_EQ(given.domain.bodies[0].shape.semi_axes.x, 1e-3);
+    EXPECT_EQ(given.domain.bodies[0].shape.centre.z, 0.01);
+    EXPECT_EQ(given.domain.bodies[0].motion(0.5).displacement.z, -1.5);
+    EXPECT_EQ(given.time.steps, 40);
+    EXPECT_EQ(given.heat->regions[0].material.conductivity, 0.06);
+    EXPECT_EQ(given.heat->regions[1].source({2, 0, 0}, 0.5), 1e6 + 3);
+    ASSERT_EQ(given.parameters.size(), 4u);
+    EXPECT_EQ(given.parameters[1].name, "d");
+    EXPECT_EQ(given.parameters[1].value, 2e-3);
 }
 
 TEST(Parameters, AreKeptInTheCaseAsRunWithTheExpressionsAsWritten) {
-    const Case it = parse_case(with_parameters(parameters), "case.toml");
-    const std::string written = to_toml(it);
+    const Case given = parse_case(with_parameters(parameters), "case.toml");
+    const std::string written = to_toml(given);
     for (const char* line : {"[parameters]\nspeed = 3\nd = \"2*r\"  # = 0.002\nr = 0.001\nn = 20\n",
                              "\nradius = \"0.5*d\"  # = 0.001\n", "\ncentre = [0, 0, \"10*r\"]  # = [0, 0, 0.01]\n",
                              "\nz = \"-speed*t\"\n", "\nsteps = \"2*n\"  # = 40\n"})
@@ -92,9 +92,9 @@ TEST(Parameters, NumbersThatAreExpressionsAreCheckedAsNumbers) {
 }
 
 TEST(Parameters, ThatNothingUsesAreToldOf) {
-    const Case it = parse_case(with_parameters(parameters + "spare = 1\n"), "case.toml");
+    const Case given = parse_case(with_parameters(parameters + "spare = 1\n"), "case.toml");
     std::vector<std::string> unused;
-    for (const Parameter& parameter : it.parameters)
+    for (const Parameter& parameter : given.parameters)
         if (!parameter.used) unused.push_back(parameter.name);
     EXPECT_EQ(unused, std::vector<std::string>{"spare"});
     const std::string resting = replaced(full_case, "\"-1.0*t\"", "0") + "[parameters]\nspare = 1\n";

@@ -12,9 +12,9 @@ const std::string text = replaced(replaced(full_case, "radius = 0.001", "radius 
                                   "steps = \"n\"") + "[parameters]\nd = 2e-3\nn = 40\n";
 
 std::string refusal(const std::string& changed) {
-    Case it = parse_case(changed, "case.toml");
+    Case given = parse_case(changed, "case.toml");
     try {
-        go_on_with(it, {to_toml(parse_case(text, "case.toml")), 40, 0}, "case.toml", "d");
+        go_on_with(given, {to_toml(parse_case(text, "case.toml")), 40, 0}, "case.toml", "d");
     } catch (const CaseError& error) {
         return error.what();
     }
@@ -37,10 +37,10 @@ TEST(SameCase, ExpressionsOfParametersAreComparedByValue) {
 }
 
 TEST(SameCase, StepsFollowALaterEnd) {
-    Case it = parse_case(replaced(text, "end = 0.01", "end = 0.02"), "case.toml");
-    go_on_with(it, {to_toml(parse_case(text, "case.toml")), 40, 0}, "case.toml", "d");
-    EXPECT_EQ(it.time.steps, 80);
-    EXPECT_NE(to_toml(it).find("\nsteps = 80\n"), std::string::npos) << to_toml(it);
+    Case given = parse_case(replaced(text, "end = 0.01", "end = 0.02"), "case.toml");
+    go_on_with(given, {to_toml(parse_case(text, "case.toml")), 40, 0}, "case.toml", "d");
+    EXPECT_EQ(given.time.steps, 80);
+    EXPECT_NE(to_toml(given).find("\nsteps = 80\n"), std::string::npos) << to_toml(given);
 }
 
 }  // namespace

@@ -23,15 +23,15 @@ std::string refusal(std::vector<std::string> settings) {
 }
 
 TEST(Settings, ReplaceValues) {
-    const Case it = with({"speed=2", "size.surface=1e-4", "time.steps=10", "heat.region.droplet.conductivity=40",
+    const Case given = with({"speed=2", "size.surface=1e-4", "time.steps=10", "heat.region.droplet.conductivity=40",
                           "body[0].radius=0.0009", "body[1].centre[2]=0.004", "heat.face.z_min={ value = 500 }"});
-    EXPECT_EQ(it.domain.bodies[0].motion(1).displacement.z, -2);
-    EXPECT_EQ(it.domain.size.surface, 1e-4);
-    EXPECT_EQ(it.time.steps, 10);
-    EXPECT_EQ(it.heat->regions[1].material.conductivity, 40);
-    EXPECT_EQ(it.domain.bodies[0].shape.semi_axes.x, 0.0009);
-    EXPECT_EQ(it.domain.bodies[1].shape.centre.z, 0.004);
-    EXPECT_EQ(it.heat->faces[4].kind, HeatFace::Kind::value);
+    EXPECT_EQ(given.domain.bodies[0].motion(1).displacement.z, -2);
+    EXPECT_EQ(given.domain.size.surface, 1e-4);
+    EXPECT_EQ(given.time.steps, 10);
+    EXPECT_EQ(given.heat->regions[1].material.conductivity, 40);
+    EXPECT_EQ(given.domain.bodies[0].shape.semi_axes.x, 0.0009);
+    EXPECT_EQ(given.domain.bodies[1].shape.centre.z, 0.004);
+    EXPECT_EQ(given.heat->faces[4].kind, HeatFace::Kind::value);
 }
 
 TEST(Settings, FindBodiesByName) {
@@ -50,9 +50,9 @@ TEST(Settings, AreKeptInTheCaseAsRun) {
 TEST(Settings, SetWhatTheFileLeavesOut) {
     const std::string bare = replaced(full_case, "[random]\nseed = 9223372036854775807\n", "");
     const std::vector<std::string> settings = {"random.seed=5", "quality.method=paper"};
-    const Case it = parse_case(bare, "case.toml", settings);
-    EXPECT_EQ(it.random.seed, 5u);
-    EXPECT_TRUE(it.quality.paper);
+    const Case given = parse_case(bare, "case.toml", settings);
+    EXPECT_EQ(given.random.seed, 5u);
+    EXPECT_TRUE(given.quality.paper);
 }
 
 // A word in place of a text is that text; in place of a number it is refused, as 1O would be an expression of O.

@@ -39,13 +39,13 @@ protected:
 
 TEST_F(CaseSurface, IsReadScaledTurnedAndPut) {
     put("cube.obj", cube + "f 4 1 5 8\n");
-    const Case it = read("file = \"cube.obj\"\nscale = 0.2\ncentre = [0.3, 0.4, 0.5]\nrotation = [0, 0, 1, 90]\nsize = 0.03");
-    const Body& body = it.domain.bodies[0];
+    const Case given = read("file = \"cube.obj\"\nscale = 0.2\ncentre = [0.3, 0.4, 0.5]\nrotation = [0, 0, 1, 90]\nsize = 0.03");
+    const Body& body = given.domain.bodies[0];
     EXPECT_NEAR(volume(body.shape), 0.008, 1e-15);
     EXPECT_NEAR(signed_distance(body.shape, {0.2, 0.5, 0.6}), -0.1, 1e-12);  // the middle: x turned to y, y to -x
     EXPECT_EQ(body.size, 0.03);
-    EXPECT_EQ(asked_size(it.domain, 0), 0.03);
-    const std::string written = to_toml(it);
+    EXPECT_EQ(asked_size(given.domain, 0), 0.03);
+    const std::string written = to_toml(given);
     const Case again = parse_case(written, "elsewhere/case.toml");
     EXPECT_EQ(to_toml(again), written);
     EXPECT_EQ(again.domain.bodies[0].shape.centre, body.shape.centre);
@@ -54,11 +54,11 @@ TEST_F(CaseSurface, IsReadScaledTurnedAndPut) {
 TEST_F(CaseSurface, IsCutByAFace) {
     put("cube.obj", cube + "f 4 1 5 8\n");
     const std::string body = "file = \"cube.obj\"\nscale = 0.4\ncentre = [0.8, 0.3, 0.2]\n";
-    const Case it = read(body + "cut = true");
-    EXPECT_EQ(reached_faces(it.domain.bodies[0].shape), 0b10u);  // x max
-    EXPECT_NEAR(volume(it.domain.bodies[0].shape), 0.2 * 0.4 * 0.4, 1e-15);
-    EXPECT_LT(distance(it.domain.bodies[0].shape.centre, {0.9, 0.5, 0.4}), 1e-15);
-    const std::string written = to_toml(it);
+    const Case given = read(body + "cut = true");
+    EXPECT_EQ(reached_faces(given.domain.bodies[0].shape), 0b10u);  // x max
+    EXPECT_NEAR(volume(given.domain.bodies[0].shape), 0.2 * 0.4 * 0.4, 1e-15);
+    EXPECT_LT(distance(given.domain.bodies[0].shape.centre, {0.9, 0.5, 0.4}), 1e-15);
+    const std::string written = to_toml(given);
     EXPECT_NE(written.find("cut = true"), std::string::npos);
     EXPECT_EQ(to_toml(parse_case(written, "elsewhere/case.toml")), written);
     EXPECT_EQ(reached_faces(read(body).domain.bodies[0].shape), 0u);
