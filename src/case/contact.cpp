@@ -51,7 +51,6 @@ void read_contact(const CaseTable& file, Case& given) {
         if (given.domain.bodies[body].shape.surface)
             file.refuse("contact", fmt::format("is known between spheres and ellipsoids, and with faces of the box; {} is bounded by "
                                                "triangles, or reaches through a face", named(given.domain.bodies[body])));
-    if (given.domain.walls) file.refuse("contact", "is known with faces of the box alone; domain.mesh has other walls too");
     const CaseTable table = file.table("contact");
     table.allow({"lubrication", "restitution", "gap"});
     ContactOptions options{.gap = usual_gap(given), .reach = reach_in_sizes * given.domain.size.surface};

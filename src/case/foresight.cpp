@@ -104,9 +104,9 @@ const LayerOptions* neediest_layer(const Domain& domain, const Approach& gap) {
 void check_layer_gap(const Domain& domain, const Approach& gap) {
     const LayerOptions* layer = neediest_layer(domain, gap);
     if (layer == nullptr || gap.gap >= least_gap(*layer)) return;
-    throw DomainError(
-        fmt::format("at t = {} {}, less than layer.min_gap = {:.3g} m; at most {:.2g} m would do",
-                    time_words(gap.time), in_words(domain, gap), least_gap(*layer), rounded_down(gap.gap)));
+    throw DomainError(fmt::format("at t = {} {}, less than layer.min_gap = {:.3g} m{}", time_words(gap.time), in_words(domain, gap),
+                                  least_gap(*layer),
+                                  gap.gap > 0 ? fmt::format("; at most {:.2g} m would do", rounded_down(gap.gap)) : ""));
 }
 
 /// The farthest gap that is of interest [m].

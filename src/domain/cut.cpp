@@ -130,14 +130,6 @@ Triangles in_place(const Shape& shape, const Bounds& box) {
     return of;
 }
 
-void refuse_triangles_in_faces(const Triangles& of, const Bounds& box) {
-    for (int face = 0; face < box_faces; ++face)
-        for (const Triangle& t : of.triangles)
-            if (std::ranges::all_of(t, [&](int p) { return of.points[as_size(p)][face / 2] == plane_of(box, face); }))
-                throw DomainError("a part of its surface lies in " + wall_name(face) + ", at " +
-                                  place_words(of.points[as_size(t[0])]) + "; it is to end before, or to reach through");
-}
-
 std::vector<std::array<int, 2>> lines_of(const Triangles& of, const Bounds& box) {
     std::vector<std::array<int, 2>> lines;
     for (const Triangle& t : of.triangles)
@@ -173,6 +165,15 @@ PartInBox part_in(const Bounds& box, std::span<const Vec3> points, std::span<con
     return part;
 }
 
+std::optional<TriangleOnFace> triangle_on_face(const Bounds& box, std::span<const Vec3> points,
+                                               std::span<const Triangle> triangles) {
+    for (int face = 0; face < box_faces; ++face)
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            if (std::ranges::all_of(triangles[t], [&](int p) { return points[as_size(p)][face / 2] == plane_of(box, face); }))
+                return TriangleOnFace{t, face};
+    return std::nullopt;
+}
+
 Shape cut_by(const Box& box, const Shape& shape) {
     const Bounds within{box.min, box.max};
     Triangles all = in_place(shape, within);
@@ -189,7 +190,10 @@ Shape cut_by(const Box& box, const Shape& shape) {
         Splitting(all, within, face).split();
     }
     if (!is_cut) return shape;
-    refuse_triangles_in_faces(all, within);
+    if (const auto lies = triangle_on_face(within, all.points, all.triangles))
+        throw DomainError("a part of its surface lies in " + wall_name(lies->face) + ", at " +
+                          place_words(all.points[as_size(all.triangles[lies->triangle][0])]) +
+                          "; it is to end before, or to reach through");
     PartInBox part = part_in(within, all.points, all.triangles);
     if (part.triangles.empty()) throw DomainError("nothing of its surface is in the box");
     Shape cut = shape_of_facets(std::move(part.points), std::move(part.triangles), &within);

@@ -3,6 +3,7 @@
 #include "domain/triangulated_surface.h"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,5 +26,13 @@ struct PartInBox {
 };
 [[nodiscard]] PartInBox part_in(const Bounds& box, std::span<const Vec3> points,
                                 std::span<const std::array<int, 3>> triangles);
+
+/// The first triangle that lies in a face of the box, and which one that is.
+struct TriangleOnFace {
+    std::size_t triangle;
+    int face;
+};
+[[nodiscard]] std::optional<TriangleOnFace> triangle_on_face(const Bounds& box, std::span<const Vec3> points,
+                                                             std::span<const std::array<int, 3>> triangles);
 
 }  // namespace kropla

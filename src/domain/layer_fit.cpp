@@ -19,6 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// "; the largest layer that fits is 3.3e-05 m thick: layer.first_height of at most 5.3e-06 m, or ..."
 std::string advice(const LayerOptions& layer, double room) {
     if (!std::isfinite(room)) return "";
+    if (!(room > 0)) return "; none fits: a smaller size.surface may do, or bodies farther apart";
     std::string text = "; the largest layer that fits is " + metres(rounded_down(room)) + " thick";
     const double height = layer.first_height * (room / thickness(layer)),
                  growth = fitting_growth(layer, room);  // below 1 it is no advice

@@ -23,7 +23,8 @@ struct Triangulation {
 /// Throws Interrupted if the watch says so.
 [[nodiscard]] Triangulation triangulate(std::span<const Vec3> points, const Watch* watch = nullptr);
 
-/// A triangulated surface, closed, or open at faces of the box that its body reaches through; triangles are counter-clockwise seen from outside.
+/// A triangulated surface, closed, or open at faces of the box that its body reaches through; triangles are
+/// counter-clockwise seen from outside.
 struct Surface {
     std::vector<Vec3> points;
     std::vector<std::array<int, 3>> triangles;

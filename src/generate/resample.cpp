@@ -261,22 +261,6 @@ Surface resampled(const Shape& shape, const SurfaceSize& asked, const Watch* wat
     return shape.cut ? surface_in(shape.cut->box, surface) : surface;
 }
 
-namespace {
-
-/// Where the line in which it ends on a face is shorter than its triangles, a triangle lies on the face.
-void refuse_closed_on_faces(const Surface& wall, const CutSurface& cut) {
-    for (std::size_t i = 0; i < wall.triangles.size(); ++i)
-        for (int face = 0; face < box_faces; ++face) {
-            const int axis = face / 2;
-            const double plane = face % 2 == 0 ? cut.box.min[axis] : cut.box.max[axis];
-            if (std::ranges::all_of(wall.triangles[i], [&](int p) { return wall.points[as_size(p)][axis] == plane; }))
-                throw SurfaceError("the line in which it ends on " + wall_name(face) + " has too few edges, at " +
-                                   place_words(wall.points[as_size(wall.triangles[i][0])]), {i});
-        }
-}
-
-}  // namespace
-
 Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
     Snapshot bounded = at;
     for (std::size_t body = 0; body < walls.size(); ++body) {
@@ -285,7 +269,11 @@ Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at) {
         std::vector<Vec3> points = walls[body].points;
         try {
             if (shape.cut) {
-                refuse_closed_on_faces(walls[body], *shape.cut);
+                // The line in which it ends there is shorter than its triangles.
+                if (const auto lies = triangle_on_face(shape.cut->box, points, walls[body].triangles))
+                    throw SurfaceError("the line in which it ends on " + wall_name(lies->face) + " has too few edges, at " +
+                                           place_words(points[as_size(walls[body].triangles[lies->triangle][0])]),
+                                       {lies->triangle});
                 shape = shape_of_facets(std::move(points), walls[body].triangles, &shape.cut->box);
                 continue;
             }

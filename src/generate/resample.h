@@ -20,7 +20,8 @@ struct BodyError : DomainError {
 
 /// The snapshot with, for each shape that triangles bound, what its surface among `walls` bounds: no finer than the mesh,
 /// so that distances cost no more than that. Throws BodyError if such a surface cuts itself, as where a part is thinner than its
-/// triangles, or closes on a face of the box, where it ends in a line that is shorter than these; says that a smaller size would do.
+/// triangles, or closes on a face of the box, where it ends in a line that is shorter than these; says that a smaller
+/// size may do.
 [[nodiscard]] Snapshot bounded_by(const std::vector<Surface>& walls, const Snapshot& at);
 
 /// A point that was put into an edge.

@@ -88,8 +88,8 @@ struct TransferReport {
 /// square (Galerkin) among the fields that have the old integral there, and at the rim the old values. Values
 /// of vertices that keep one unchanged cell stay, bit for bit, where a cluster need not grow: it grows by a
 /// ring of cells if it has no free vertex, or if no values within the bounds have the integral. Vertices of
-/// interfaces and layers keep their values, or where they are new or elsewhere get the old one at the nearest point, so that each region's integral is its own. Linear fields are kept
-/// exactly.
+/// interfaces and layers keep their values, or where they are new or elsewhere get the old one at the nearest
+/// point, so that each region's integral is its own. Linear fields are kept exactly.
 /// Throws, nothing written: FieldError if a value that takes part or a weight is not finite, or a region has no
 /// weight; TransferError if the integral of a region would differ by more than 1e-12 of that of the absolute
 /// value, as where cells change in a region of which no vertex is free; Interrupted if the watch says so.

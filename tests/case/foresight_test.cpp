@@ -90,6 +90,8 @@ TEST(Foresight, ALayersLeastGapHoldsOnTheWay) {
               "m; at most "
               "0.0001 m would do");
     EXPECT_EQ(refusal(layered(2e-4, "1.5e-4")), "");
+    EXPECT_EQ(refusal(layered(0, "1.5e-4")),
+              "at t = 2 ms body \"drop\" touches the wall z min, less than layer.min_gap = 0.00015 m");
 }
 
 TEST(Foresight, AJumpIsFoundBeforeTheRun) {

@@ -187,6 +187,15 @@ TEST(LayeredMesh, RefusesLayersTooThickAndSaysWhatFits) {
     domain.bodies[1].layer = LayerOptions{3, 0.15, 1.25, Side::outside, {}};
     expect_error(domain, {"too much for the gap of 0.7 m to body \"1\"",
                           "fits is 0.092 m thick, by layer.first_height of at most 0.024 m"});  // at the wall, too
+    Domain touching = small_domain({ball({0, 0, 1.02}, 1)});  // its triangles reach farther than the gap is wide
+    touching.bodies[0].layer = LayerOptions{3, 0.1, 1.25, Side::outside, 0.01};
+    try {
+        check_layers(touching, 0);
+        ADD_FAILURE() << "is let pass";
+    } catch (const DomainError& error) {
+        EXPECT_STREQ(error.what(), "body \"0\": its layer is 0.381 m thick, too much for the gap of 0.02 m to the wall z min; none fits: a "
+                                   "smaller size.surface may do, or bodies farther apart");
+    }
 }
 
 TEST(LayeredMesh, TheLargestLayerThatFitsDoes) {
