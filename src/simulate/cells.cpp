@@ -51,6 +51,26 @@ Cells living_cells(const Mesh& mesh, Region only) {
     return cells;
 }
 
+Pieces pieces_of(const Mesh& mesh, const Cells& cells) {
+    Array<Vertex, Vertex> towards(mesh.position.size());  // of each vertex one of its piece with a lower number, or itself
+    const auto first_of = [&](Vertex v) {
+        while (towards[v] != v) v = towards[v] = towards[towards[v]];
+        return v;
+    };
+    for_each_cell(cells, [&](const auto& cell) {
+        const auto vertices = cell_vertices(mesh, cell);
+        for (Vertex v : vertices) {
+            if (!towards[v].exists()) towards[v] = v;
+            const Vertex a = first_of(vertices[0]), b = first_of(v);
+            towards[std::max(a, b)] = std::min(a, b);
+        }
+    });
+    Pieces pieces{Array<Vertex, int>(mesh.position.size(), -1)};
+    for (Vertex v : towards.indices())
+        if (towards[v].exists()) pieces.of[v] = towards[v] == v ? pieces.count++ : pieces.of[first_of(v)];
+    return pieces;
+}
+
 std::size_t count_regions(const Mesh& mesh) {
     Region last;
     for (Tet t : mesh.tets.indices())

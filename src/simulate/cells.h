@@ -34,6 +34,13 @@ void for_each_cell(const Cells& cells, const Visit& visit) {
     return layer_of(mesh, prism.layer).region;
 }
 
+/// The pieces that cells are in, its connected components: those that share a vertex are of one.
+struct Pieces {
+    Array<Vertex, int> of;  // that of the vertex, by number; -1: it is of no cell
+    int count = 0;
+};
+[[nodiscard]] Pieces pieces_of(const Mesh& mesh, const Cells& cells);
+
 /// One more than the largest number of a region that has cells; 0 if there are no cells.
 [[nodiscard]] std::size_t count_regions(const Mesh& mesh);
 

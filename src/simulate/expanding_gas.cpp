@@ -7,9 +7,9 @@
 
 namespace kropla {
 
-ExpandingGas::ExpandingGas(VertexMasses masses, const std::vector<Vertex>& vertices, const FlowBoundary& boundary,
+ExpandingGas::ExpandingGas(VertexMasses masses, const Pattern& pattern, const FlowBoundary& boundary,
                            FlowMaterial& material, double dt)
-    : masses_(std::move(masses)), vertices_(vertices), boundary_(boundary), material_(material), dt_(dt),
+    : masses_(std::move(masses)), pattern_(pattern), boundary_(boundary), material_(material), dt_(dt),
       gained_(material.densities.size(), 0.0) {
     for (Array<Vertex, double>& passed : passed_) passed = gained_;
 }
@@ -33,14 +33,18 @@ void ExpandingGas::begin(const StageTime& stage, const Array<Vertex, Vec3>& posi
     for (Vertex v : rate.indices()) gained_[v] += stage.weight * dt_ * rate[v];
     Array<Vertex, Vec3> passing = velocity;
     for (Vertex v : passing.indices()) passing[v] -= mesh_velocity[v];
-    double leak = 0;
+    std::vector<double> leak(as_size(pattern_.rows.pieces), 0.0), all(leak);
     for (const SolidSurface& solid : boundary_.solids)
         for_each_flux(solid.facets, position, passing, [&](Vertex v, double flux) {
             rate[v] += density[v] * flux;
-            leak += density[v] * flux;
+            leak[pattern_.piece_of(v)] += density[v] * flux;
         });
-    const double all = std::accumulate(mass.begin(), mass.end(), 0.0);
-    for (Vertex v : vertices_) expansion_[v] = (rate[v] - leak * mass[v] / all) / density[v];
+    const std::vector<Vertex>& vertices = pattern_.numbering.vertex;
+    for (Vertex v : vertices) all[pattern_.piece_of(v)] += mass[v];
+    for (Vertex v : vertices) {
+        const std::size_t piece = pattern_.piece_of(v);
+        expansion_[v] = (rate[v] - leak[piece] * mass[v] / all[piece]) / density[v];
+    }
 }
 
 void ExpandingGas::end(const StageTime& stage, const Array<Vertex, Vec3>& position, const Array<Vertex, Vec3>& velocity) {
@@ -53,7 +57,7 @@ void ExpandingGas::end(const StageTime& stage, const Array<Vertex, Vec3>& positi
 std::vector<FaceMass> ExpandingGas::through() const {
     std::vector<FaceMass> through;
     for (std::size_t face = 0; face < 6; ++face)
-        for (Vertex v : vertices_)
+        for (Vertex v : pattern_.numbering.vertex)
             if (const double rate = passed_[face][v]; rate != 0) through.push_back({v, face, rate});
     return through;
 }

@@ -12,10 +12,9 @@ namespace kropla {
 /// each stage, and what passes the faces of the box.
 class ExpandingGas {
 public:
-    /// Of a gas with these masses, in all of the vertices that are named, in a step of `dt` [s]. What is given by reference
-    /// outlives this; densities of the material are set in each stage.
-    ExpandingGas(VertexMasses masses, const std::vector<Vertex>& vertices, const FlowBoundary& boundary,
-                 FlowMaterial& material, double dt);
+    /// Of a gas with these masses, in all of the pattern, in a step of `dt` [s]. What is given by reference outlives this;
+    /// densities of the material are set in each stage.
+    ExpandingGas(VertexMasses masses, const Pattern& pattern, const FlowBoundary& boundary, FlowMaterial& material, double dt);
 
     /// A stage begins, with its vertices at `position`, on the velocities that solid bodies have. Without a velocity of the
     /// mesh the flow is steady, and nothing is gained.
@@ -35,7 +34,7 @@ public:
 
 private:
     VertexMasses masses_;
-    const std::vector<Vertex>& vertices_;
+    const Pattern& pattern_;
     const FlowBoundary& boundary_;
     FlowMaterial& material_;
     double dt_;

@@ -3,6 +3,7 @@
 
 #include <kropla/base/error.h>
 #include <kropla/mesh/cells.h>
+#include <kropla/mesh/topology.h>
 #include "simulate/elements.h"
 
 #include <algorithm>
@@ -111,30 +112,35 @@ void fix_solid(const Step& step, const SolidSurface& solid, FlowConditions& cond
     }
 }
 
-/// The sizes of the fluxes through facets [m^3/s].
-double sizes_of_fluxes(const std::vector<std::array<Vertex, 3>>& facets, const Array<Vertex, Vec3>& position,
-                       const Array<Vertex, Vec3>& velocity) {
-    double sum = 0;
-    for (const auto& facet : facets) sum += std::abs(flux_through({facet}, position, velocity));
-    return sum;
+[[noreturn]] void refuse_net_flux(const Step& step, double net, const Vec3* place) {
+    std::ostringstream message;
+    message << step.options.key << ": " << std::abs(net) << " m^3/s flow "
+            << (net < 0 ? "in without a way out" : "out and nothing in") << " at t = " << step.t + step.dt << " s";
+    if (place != nullptr) message << ", in the part at (" << place->x << ", " << place->y << ", " << place->z << ") m";
+    message << ": open a face, or let the given velocities balance";
+    throw CaseError(message.str());
 }
 
-void check_way_out(const Step& step, const FlowBoundary& boundary, const FlowConditions& conditions) {
+void check_way_out(const Step& step, const Pattern& pattern, const FlowBoundary& boundary,
+                   const FlowConditions& conditions) {
     const Array<Vertex, Vec3>& x = step.current.position;
-    double net = 0, sizes = 0;
+    std::vector<double> net(conditions.closed.size(), 0.0), size(net);
+    std::vector<Vertex> at(net.size());
     const auto add = [&](const auto& facets) {
-        net += flux_through(facets, x, conditions.end);
-        sizes += sizes_of_fluxes(facets, x, conditions.end);
+        for (const auto& facet : facets) {
+            const std::size_t piece = pattern.piece_of(facet[0]);
+            const double flux = flux_through({facet}, x, conditions.end);
+            net[piece] += flux;
+            size[piece] += std::abs(flux);
+            if (flux != 0) at[piece] = facet[0];
+        }
     };
     for (std::size_t face = 0; face < 6; ++face)
         if (step.options.faces[face].kind == FlowFace::Kind::velocity) add(boundary.faces[face]);
     for (const SolidSurface& solid : boundary.solids) add(solid.facets);
-    if (std::abs(net) <= unbalanced * sizes) return;
-    std::ostringstream message;
-    message << step.options.key << ": " << std::abs(net) << " m^3/s flow "
-            << (net < 0 ? "in without a way out" : "out and nothing in") << " at t = " << step.t + step.dt
-            << " s: open a face, or let the given velocities balance";
-    throw CaseError(message.str());
+    for (std::size_t p = 0; p < net.size(); ++p)
+        if (conditions.closed[p] != 0 && std::abs(net[p]) > unbalanced * size[p])
+            refuse_net_flux(step, net[p], net.size() > 1 ? &x[at[p]] : nullptr);
 }
 
 /// Where it ends on faces of the box, as the options have it.
@@ -177,6 +183,16 @@ LiquidSurface liquid_surface(const Mesh& mesh, const FlowOptions& options, Regio
     return liquid;
 }
 
+/// The facets between what flows and what does not, or flows as another region; ascending.
+std::vector<std::array<Vertex, 3>> ends_of_flow(const Mesh& mesh, const FlowOptions& options) {
+    std::vector<std::array<Vertex, 3>> ends;
+    for (std::size_t r = 0; r < options.regions.size(); ++r)
+        if (is_fluid(options, Region(r)))
+            for (const auto& facet : region_surface(mesh, Region(r)).interface) ends.push_back(sorted(facet));
+    std::ranges::sort(ends);
+    return ends;
+}
+
 }  // namespace
 
 Cells flow_cells(const Mesh& mesh, const FlowOptions& options) {
@@ -194,6 +210,7 @@ FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double 
     const Cells cells = flow_cells(mesh, options);
     boundary.faces = facets_of_faces(mesh, cells);
     boundary.fixed_walls = vertices_of(facets_of_fixed_walls(mesh, cells));
+    const auto ends = ends_of_flow(mesh, options);
     for (std::size_t r = 1; r < options.regions.size(); ++r) {
         const Region body(r);
         if (is_fluid(options, body)) {
@@ -205,6 +222,7 @@ FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double 
         SolidSurface solid{body, motion != nullptr ? (*motion)(t).centre : centre_of(mesh, body),
                            region_surface(mesh, body).interface, {}};
         for (auto& facet : solid.facets) std::swap(facet[1], facet[2]);
+        std::erase_if(solid.facets, [&](const auto& facet) { return !std::ranges::binary_search(ends, sorted(facet)); });
         solid.vertices = vertices_of(solid.facets);
         if (!solid.facets.empty()) boundary.solids.push_back(std::move(solid));
     }
@@ -212,18 +230,20 @@ FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double 
 }
 
 FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const FlowOptions& options,
-                               const FlowBoundary& boundary, const Array<Vertex, Vec3>& velocity, double t,
-                               double dt) {
+                               const Pattern& pattern, const FlowBoundary& boundary,
+                               const Array<Vertex, Vec3>& velocity, double t, double dt) {
     const std::size_t count = current.position.size();
     FlowConditions conditions{Array<Vertex, std::array<bool, 3>>(count, {false, false, false}),
-                              Array<Vertex, Vec3>(count), Array<Vertex, Vec3>(count), {}, true};
+                              Array<Vertex, Vec3>(count), Array<Vertex, Vec3>(count), {},
+                              std::vector<char>(as_size(pattern.rows.pieces), 1)};
     const Step step{before, current, options, velocity, t, dt};
     std::array<std::vector<Vertex>, 6> vertices;
     for (std::size_t face = 0; face < 6; ++face) vertices[face] = vertices_of(boundary.faces[face]);
     for (std::size_t face = 0; face < 6; ++face) {
         if (options.faces[face].kind == FlowFace::Kind::slip) let_slip(face, vertices[face], conditions);
         conditions.open[face] = options.faces[face].kind == FlowFace::Kind::open;
-        if (conditions.open[face] && !vertices[face].empty()) conditions.closed = false;
+        if (conditions.open[face])
+            for (Vertex v : vertices[face]) conditions.closed[pattern.piece_of(v)] = 0;
     }
     for (std::size_t face = 6; face-- > 0;)
         if (options.faces[face].kind == FlowFace::Kind::velocity)
@@ -238,7 +258,7 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
             if (!line.cosine && options.faces[line.face].kind == FlowFace::Kind::slip)
                 for (Vertex v : line.vertices) fix(step, v, at_rest, "", conditions);
     for (const SolidSurface& solid : boundary.solids) fix_solid(step, solid, conditions);
-    if (conditions.closed) check_way_out(step, boundary, conditions);
+    check_way_out(step, pattern, boundary, conditions);
     return conditions;
 }
 

@@ -2,6 +2,7 @@
 
 #include "simulate/cells.h"
 #include "simulate/flow_cell.h"
+#include "simulate/pattern.h"
 #include "simulate/tension.h"
 #include <kropla/simulate/flow.h>
 
@@ -31,7 +32,7 @@ struct FlowConditions {
     Array<Vertex, std::array<bool, 3>> fixed;  // which directions of the velocity
     Array<Vertex, Vec3> end, rate;             // [m/s] of them at the step's end, [m/s^2] there
     std::array<bool, 6> open = {};
-    bool closed = true;                        // nowhere open: the pressure's mean is of no matter
+    std::vector<char> closed;                  // per piece of the pattern: nowhere open, the pressure's mean is of no matter
 };
 
 /// Cells of liquids and gases.
@@ -42,9 +43,9 @@ struct FlowConditions {
                                          const Array<Vertex, double>& temperature);
 
 /// Of the step from t to t + dt that starts from `velocity`. Throws CaseError if a quantity is not finite or
-/// what flows in has no way out.
-[[nodiscard]] FlowConditions flow_conditions(const Mesh& before, const Mesh& current,
-                                             const FlowOptions& options, const FlowBoundary& boundary,
+/// what flows into a piece of the pattern has no way out of it.
+[[nodiscard]] FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const FlowOptions& options,
+                                             const Pattern& pattern, const FlowBoundary& boundary,
                                              const Array<Vertex, Vec3>& velocity, double t, double dt);
 
 /// The pressure given at open faces, at vertices that stand there at time t. Throws CaseError if it is not

@@ -45,12 +45,12 @@ Array<Vertex, Vec3> reactions(const Ranks& ranks, const Pattern& pattern, const 
     return reaction;
 }
 
-void take_off_pressure(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position, double pressure,
-                       Array<Vertex, Vec3>& reaction) {
+void take_off_pressure(const Pattern& pattern, const FlowBoundary& boundary, const Array<Vertex, Vec3>& position,
+                       const std::vector<double>& pressure, Array<Vertex, Vec3>& reaction) {
     const auto take_off = [&](const std::vector<std::array<Vertex, 3>>& facets) {
         for (const auto& [a, b, c] : facets)
             for (Vertex v : {a, b, c})
-                reaction[v] += pressure / 6 * cross(position[b] - position[a], position[c] - position[a]);
+                reaction[v] += pressure[pattern.piece_of(a)] / 6 * cross(position[b] - position[a], position[c] - position[a]);
     };
     for (const auto& face : boundary.faces) take_off(face);
     for (const SolidSurface& solid : boundary.solids) take_off(solid.facets);

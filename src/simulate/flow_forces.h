@@ -11,9 +11,9 @@ namespace kropla {
 /// rank owns. All ranks call it together, and all get the whole.
 [[nodiscard]] Array<Vertex, Vec3> reactions(const Ranks& ranks, const Pattern& pattern, const std::vector<double>& residual);
 
-/// Takes off what a pressure [Pa] that is the same everywhere adds to them.
-void take_off_pressure(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position, double pressure,
-                       Array<Vertex, Vec3>& reaction);
+/// Takes off what a pressure [Pa] that is the same everywhere in a piece of the pattern adds to them, of each piece.
+void take_off_pressure(const Pattern& pattern, const FlowBoundary& boundary, const Array<Vertex, Vec3>& position,
+                       const std::vector<double>& pressure, Array<Vertex, Vec3>& reaction);
 
 /// Of solid bodies, with their vertices at `position`.
 [[nodiscard]] std::vector<BodyForce> body_forces(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position,

@@ -222,21 +222,20 @@ PetscErrorCode apply_triangular(PC preconditioner, Vec residual, Vec correction)
 struct FlowSolver::Parts {
     const Ranks& ranks;
     const BlockPattern& blocks;
-    FlowUnknowns unknowns;
+    std::vector<char> given;               // block_size per global row
     std::vector<double> own_value;         // of the matrix, if PETSc has a copy
     std::span<double> value;
     std::vector<double> scale, own_scale;  // block_size per global and per owned row
     int iterations = 0;
     bool users_tolerance = false;
     OwnedVec right, unknown;
-    OwnedNullSpace constants;
     std::unique_ptr<Triangular> triangular;  // used by the solver until it is destroyed
     OwnedMat matrix;
     OwnedKsp solver;
 
     [[nodiscard]] const SparseRows& rows() const { return blocks.pattern.rows; }
     [[nodiscard]] bool fixed(std::size_t global_row, std::size_t k) const {
-        return unknowns.fixed[block_size * global_row + k] != 0;
+        return given[block_size * global_row + k] != 0;
     }
 
     void find_scales() {
@@ -319,23 +318,6 @@ struct FlowSolver::Parts {
         check(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
     }
 
-    /// A constant pressure, in the solver's unknowns, does nothing.
-    void leave_constants_out() {
-        Vec constant = nullptr;
-        check(VecDuplicate(unknown.get(), &constant));
-        const OwnedVec owned(constant);
-        with_entries(constant, [&](double* entry) {
-            for (std::size_t r = 0; r < rows().count(); ++r)
-                for (std::size_t k = 0; k < block_size; ++k)
-                    entry[block_size * r + k] = k == 3 ? 1 / own_scale[block_size * r + 3] : 0;
-        });
-        check(VecNormalize(constant, nullptr));
-        MatNullSpace space = nullptr;
-        check(MatNullSpaceCreate(ranks.communicator, PETSC_FALSE, 1, &constant, &space));
-        constants.reset(space);
-        check(MatSetNullSpace(matrix.get(), space));
-    }
-
     void make_solver() {
         KSP made = nullptr;
         check(KSPCreate(ranks.communicator, &made));
@@ -363,9 +345,8 @@ struct FlowSolver::Parts {
     }
 };
 
-FlowSolver::FlowSolver(const Ranks& ranks, const BlockPattern& blocks, FlowUnknowns unknowns)
-    : parts_(
-          new Parts{ranks, blocks, std::move(unknowns), {}, {}, {}, {}, 0, false, {}, {}, {}, {}, {}, {}}) {
+FlowSolver::FlowSolver(const Ranks& ranks, const BlockPattern& blocks, std::vector<char> fixed)
+    : parts_(new Parts{ranks, blocks, std::move(fixed), {}, {}, {}, {}, 0, false, {}, {}, {}, {}, {}}) {
     const std::size_t size = block_size * blocks.pattern.rows.count();
     parts_->right = make_vector(ranks, size);
     parts_->unknown = make_vector(ranks, size);
@@ -385,7 +366,6 @@ void FlowSolver::take(const PressureScales* scales) {
     p.find_scales();
     p.scale_and_fix();
     p.tell_of_new_values();
-    if (p.unknowns.closed) p.leave_constants_out();
     if (scales != nullptr)
         p.triangular = std::make_unique<Triangular>(p.ranks, p.blocks, p.value, *scales, p.scale, p.own_scale);
     p.make_solver();
@@ -458,7 +438,7 @@ void rehearse_flow(const Ranks& ranks) {
     const SparseRows& rows = blocks.pattern.rows;
     const PressureScales scales{std::vector<double>(rows.column.size(), 1.0), std::vector<double>(rows.count(), 1.0)};
     for (const PressureScales* chosen : {static_cast<const PressureScales*>(nullptr), &scales}) {
-        FlowSolver solver(ranks, blocks, {std::vector<char>(block_size * rows.count(), 0), false});
+        FlowSolver solver(ranks, blocks, std::vector<char>(block_size * rows.count(), 0));
         const std::span<double> values = solver.values();
         for (std::size_t r = 0; r < rows.count(); ++r)
             for (auto k = static_cast<std::size_t>(rows.begin[r]); k < static_cast<std::size_t>(rows.begin[r + 1]); ++k)

@@ -9,12 +9,6 @@
 
 namespace kropla {
 
-/// Which unknowns of a flow are given, and whether the pressure is known but for a constant.
-struct FlowUnknowns {
-    std::vector<char> fixed;  // block_size per global row
-    bool closed;
-};
-
 /// What a viscous flow's solver needs beside the matrix: the pressure's part of the inverse, see
 /// flow_solver.cpp.
 struct PressureScales {
@@ -22,10 +16,12 @@ struct PressureScales {
     std::vector<double> viscous;  // per owned row: integral of phi_i / mu [m^3/(Pa s)]
 };
 
-/// Solves J delta = -residual for corrections of a flow, J kept from one call of `take` to the next.
+/// Solves J delta = -residual for corrections of a flow, J kept from one call of `take` to the next. Where no face is open
+/// the pressure is known but for a constant, which stays as it is or drifts; the residual is to be balanced.
 class FlowSolver {
 public:
-    FlowSolver(const Ranks& ranks, const BlockPattern& blocks, FlowUnknowns unknowns);
+    /// `fixed`: block_size per global row, whether the unknown is given.
+    FlowSolver(const Ranks& ranks, const BlockPattern& blocks, std::vector<char> fixed);
     ~FlowSolver();
     FlowSolver(const FlowSolver&) = delete;
     FlowSolver& operator=(const FlowSolver&) = delete;

@@ -54,9 +54,9 @@ public:
           blocks_(make_block_pattern(current, cells_, ranks, upper_sides(current, cells_))),
           boundary_(flow_boundary(current, options, t + dt, temperature)),
           surfaces_(blocks_.pattern, boundary_.liquids),
-          conditions_(flow_conditions(before, current, options, boundary_, start.velocity, t, dt)),
+          conditions_(flow_conditions(before, current, options, blocks_.pattern, boundary_, start.velocity, t, dt)),
           material_(flow_materials(current, options, temperature)), guess_(start),
-          solver_(ranks, blocks_, unknowns()) {
+          solver_(ranks, blocks_, fixed_unknowns()) {
         system_.value = solver_.values();
         find_pressures();
         find_expanding();
@@ -95,7 +95,7 @@ public:
         report.passes = passes_;
         report.error = error_;
         Array<Vertex, Vec3> reaction = reactions(ranks_, blocks_.pattern, reaction_);
-        if (conditions_.closed) take_off_pressure(boundary_, current_.position, mean_pressure(), reaction);
+        take_off_pressure(blocks_.pattern, boundary_, current_.position, mean_pressures(), reaction);
         report.bodies = body_forces(boundary_, current_.position, guess_.velocity, reaction);
         for (const BodyForce& body : report.bodies) report.net_flux += body.flux;
         for (std::size_t face = 0; face < 6; ++face) {
@@ -116,10 +116,10 @@ public:
     /// The state at the step's end: zero where nothing flows.
     [[nodiscard]] FlowState state() const {
         FlowState end = still_flow(current_);
-        const double mean = conditions_.closed ? mean_pressure() : 0;
+        const std::vector<double> mean = mean_pressures();
         for (Vertex v : numbering().vertex) {
             end.velocity[v] = guess_.velocity[v];
-            end.pressure[v] = guess_.pressure[v] - mean;
+            end.pressure[v] = guess_.pressure[v] - mean[blocks_.pattern.piece_of(v)];
         }
         set_within(end, mean);
         if (gas_) end.density = gas_->densities();
@@ -162,22 +162,25 @@ private:
                 if (!upper()[v].exists()) guess_.pressure[v] = guess_.within[as_size(region.value - 1)][v];
         });
     }
-    [[nodiscard]] double mean_pressure() const {
-        double sum = 0, volume = 0;
+    /// Of each piece that is closed; zero in the others.
+    [[nodiscard]] std::vector<double> mean_pressures() const {
+        std::vector<double> sum(conditions_.closed.size(), 0.0), volume(sum);
         for_each_share(current_, cells_, [&](const auto& cell, Vertex v, double share) {
-            sum += share * pressure_at(v, cell_region(current_, cell));
-            volume += share;
+            const std::size_t piece = blocks_.pattern.piece_of(v);
+            sum[piece] += share * pressure_at(v, cell_region(current_, cell));
+            volume[piece] += share;
         });
-        return sum / volume;
+        for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = conditions_.closed[p] != 0 ? sum[p] / volume[p] : 0;
+        return sum;
     }
-    /// At the end, less the mean.
-    void set_within(FlowState& end, double mean) const {
+    /// At the end, less the mean of the piece.
+    void set_within(FlowState& end, const std::vector<double>& mean) const {
         if (upper().empty()) return;
         end.within.assign(options_.regions.size() - 1, Array<Vertex, double>(current_.position.size(), 0.0));
         for_each_cell(cells_, [&](const auto& cell) {
             const Region region = cell_region(current_, cell);
             for (Vertex v : cell_vertices(current_, cell))
-                if (region.value > 0) end.within[as_size(region.value - 1)][v] = pressure_at(v, region) - mean;
+                if (region.value > 0) end.within[as_size(region.value - 1)][v] = pressure_at(v, region) - mean[blocks_.pattern.piece_of(v)];
         });
     }
 
@@ -209,13 +212,13 @@ private:
             });
     }
 
-    [[nodiscard]] FlowUnknowns unknowns() const {
-        FlowUnknowns unknowns{{}, conditions_.closed};
+    [[nodiscard]] std::vector<char> fixed_unknowns() const {
+        std::vector<char> given;
         for_each_unknown([&](std::size_t, Vertex v, bool further) {
-            for (bool fixed : conditions_.fixed[v]) unknowns.fixed.push_back(fixed || further ? 1 : 0);
-            unknowns.fixed.push_back(0);
+            for (bool fixed : conditions_.fixed[v]) given.push_back(fixed || further ? 1 : 0);
+            given.push_back(0);
         });
-        return unknowns;
+        return given;
     }
 
     void prescribe(const Array<Vertex, Vec3>& velocity) {
@@ -233,7 +236,7 @@ private:
         const FlowStage stage{current_,         position,  mesh_velocity_,     old,
                               guess_,           material_, conditions_.open,   open_pressure,
                               options_.gravity, per_time,  options_.convection, upper()};
-        if (conditions_.closed) share_of_volume_ = shares_of_volume(current_, cells_, numbering(), position);
+        share_of_volume_ = shares_of_volume(current_, cells_, blocks_.pattern, position);
         surfaces_.begin(position, mesh_velocity_, at.share * dt_);
         const bool fresh = !solver_.has_matrix();
         assemble(stage, fresh);
@@ -261,9 +264,8 @@ private:
             left = solver_.size(system_.residual);
         }
         if (left > 0) error_ = left / largest_left_;
-        if (!conditions_.closed)
-            let_rest_out(ranks_, blocks_.pattern, boundary_, conditions_, position,
-                         gas_ ? gas_->densities() : Array<Vertex, double>(), system_.residual, guess_.velocity);
+        let_rest_out(ranks_, blocks_.pattern, boundary_, conditions_, position,
+                     gas_ ? gas_->densities() : Array<Vertex, double>(), system_.residual, guess_.velocity);
         if (gas_) gas_->end(at, position, guess_.velocity);
         if (!steady() && options_.convection) note_momentum(stage, at.weight * dt_);
         dissipated_ += at.weight * dt_ * dissipation(current_, cells_, position, material_, guess_.velocity);
@@ -276,7 +278,15 @@ private:
             if (const Array<Vertex, double>& end = material.densities; !end.empty())
                 gas_.emplace(VertexMasses(before_, current_, cells_,
                                           start_.density.empty() ? end : start_.density, end, dt_),
-                             numbering().vertex, boundary_, material, dt_);
+                             blocks_.pattern, boundary_, material, dt_);
+        for (Vertex v : numbering().vertex)
+            if (gas_ && conditions_.closed[blocks_.pattern.piece_of(v)] != 0) refuse_enclosed(current_.position[v]);
+    }
+    [[noreturn]] void refuse_enclosed(const Vec3& place) const {
+        std::ostringstream message;
+        message << options_.key << ": what expands at (" << place.x << ", " << place.y << ", " << place.z
+                << ") m has no way out to an open face: a density that depends on the temperature needs one";
+        throw CaseError(message.str());
     }
 
     [[noreturn]] void give_up(int pass, double left) const {
@@ -296,7 +306,7 @@ private:
         for (std::size_t r = 0; r < rows().count() && gas_; ++r)
             system_.residual[block_size * r + 3] += gas_->expansion(vertex_of(r));
         reaction_ = system_.residual;
-        if (conditions_.closed) spread_net_flux(ranks_, rows(), share_of_volume_, system_.residual);
+        spread_net_flux(ranks_, rows(), conditions_.closed, share_of_volume_, system_.residual);
     }
 
     void add(const std::vector<double>& correction) {

@@ -135,12 +135,12 @@ void check_heat(const HeatOptions& options, const Mesh& mesh);
 /// Of each region [J/(m^3 K)], where they are.
 [[nodiscard]] std::vector<double> capacities(const HeatOptions& options);
 
-/// Is the steady state of the regions that begin with one unique? The domain is in one piece, so it is if anything in it
+/// Is the steady state of the regions that begin with one unique? Where the domain is in one piece it is if anything in it
 /// says how warm it is: a region that begins otherwise, a face with values, a surface or face that exchanges heat.
 [[nodiscard]] bool has_steady_state(const HeatOptions& options);
 
 /// "temperature" [K], as each region begins; a body's at its surface. Throws as step_heat where it is a steady state, and
-/// CaseError if there is none or more than one.
+/// CaseError if there is none or more than one, in any piece of the domain.
 [[nodiscard]] NodalField initial_temperature(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options);
 /// Where no region begins with a steady state.
 [[nodiscard]] NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options);

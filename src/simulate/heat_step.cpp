@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -53,6 +54,23 @@ HeatStep heat_step(const Mesh& before, const Mesh& current, const HeatOptions& o
             .dt = dt,
             .enthalpy = enthalpy_curves(options, flow.by_mass),
             .material = Array<Region, MaterialState>(options.regions.size())};
+}
+
+/// Every piece is to have something that says how warm it is.
+void check_known(const Mesh& mesh, const HeatOptions& options, const HeatConditions& conditions) {
+    const Pieces pieces = pieces_of(mesh, living_cells(mesh));
+    std::vector<char> known(as_size(pieces.count), 0);
+    for (const FixedValue& fixed : conditions.fixed) known[as_size(pieces.of[fixed.vertex])] = 1;
+    for (const BoundaryShare& share : conditions.shares)
+        if (share.exchanges()) known[as_size(pieces.of[share.vertex])] = 1;
+    for (Vertex v : pieces.of.indices()) {
+        if (pieces.of[v] < 0 || known[as_size(pieces.of[v])] != 0) continue;
+        const Vec3& x = mesh.position[v];
+        std::ostringstream message;
+        message << options.key << ": there is no steady state, or more than one, in the part at (" << x.x << ", " << x.y
+                << ", " << x.z << ") m, which meets no other: no face, surface or region says how warm it is";
+        throw CaseError(message.str());
+    }
 }
 
 void check_step(const Mesh& mesh, const HeatOptions& options, double dt) {
@@ -127,6 +145,7 @@ void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& optio
                     conditions.fixed.push_back({v, field.values[v], {Origin::Kind::held, r}});
         });
     }
+    check_known(mesh, options, conditions);
     const MaterialFlow rest{Array<Region, Array<Vertex, double>>(options.regions.size())};
     HeatStep step = heat_step(mesh, mesh, options, conditions, rest, field.values, dt);
     HeatSolution solution(ranks, step, conditions);

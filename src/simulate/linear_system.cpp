@@ -23,7 +23,7 @@ LinearSystem::LinearSystem(const SparseRows& sparse_rows) : rows(sparse_rows) {
 void LinearSystem::clear() {
     value.assign(rows.column.size(), 0.0);
     for (auto* per_row : {&row_sum, &right, &guess, &negligible, &held}) per_row->assign(rows.count(), 0.0);
-    closed = true;
+    closed.assign(static_cast<std::size_t>(rows.pieces), 1);
 }
 
 double row_size(const LinearSystem& system, std::size_t owned_row) {
@@ -34,7 +34,7 @@ double row_size(const LinearSystem& system, std::size_t owned_row) {
 }
 
 void fix_unknown(LinearSystem& system, int row, double value) {
-    system.closed = false;
+    system.closed[system.rows.piece_of(static_cast<std::size_t>(row))] = 0;
     if (!system.owns(row)) return;
     const std::size_t r = system.local(row);
     system.row_sum[r] = system.held[r] = row_size(system, r);

@@ -13,9 +13,27 @@ struct SparseRows {
     int first_row = 0;  // global number of row 0 here
     std::vector<PetscInt> begin = {0};
     std::vector<PetscInt> column = {};
+    // Unknowns that are not even coupled by way of others are of different pieces; numbered, for the rows of all ranks.
+    std::vector<int> piece = {};  // empty: all are of one
+    int pieces = 1;
 
     [[nodiscard]] std::size_t count() const { return begin.size() - 1; }
+    [[nodiscard]] std::size_t piece_of(std::size_t global_row) const {
+        return piece.empty() ? 0 : static_cast<std::size_t>(piece[global_row]);
+    }
+    [[nodiscard]] std::size_t piece_of_owned(std::size_t row) const {
+        return piece_of(static_cast<std::size_t>(first_row) + row);
+    }
 };
+
+/// The sums over the rows of each piece, of all ranks, of `value(owned row)`.
+template <class Value>
+[[nodiscard]] std::vector<double> sums_of_pieces(const Ranks& ranks, const SparseRows& rows, const Value& value) {
+    std::vector<double> sums(static_cast<std::size_t>(rows.pieces), 0.0);
+    for (std::size_t r = 0; r < rows.count(); ++r) sums[rows.piece_of_owned(r)] += value(r);
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), rows.pieces, MPI_DOUBLE, MPI_SUM, ranks.communicator);
+    return sums;
+}
 
 /// A chain of unknowns, each bound to the one before and the one after: enough for two levels of any multigrid.
 [[nodiscard]] SparseRows chain();
@@ -35,7 +53,7 @@ struct LinearSystem {
     std::vector<double> right, guess;  // per owned row
     std::vector<double> negligible;    // per owned row: a residual of no weight, in units of `right`
     std::vector<double> held;          // per owned row, of its sum: what it has by itself, whatever is exchanged
-    bool closed = true;                // no unknown is fixed, of any rank
+    std::vector<char> closed;          // per piece: no unknown of it is fixed, of any rank
 
     explicit LinearSystem(const SparseRows& sparse_rows);  // of zeros
     void clear();                                          // of zeros again

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 
 namespace kropla {
 namespace {
@@ -83,11 +82,17 @@ void take_divergence(const Mesh& mesh, const Cells& cells, const Array<Vertex, V
     });
 }
 
-/// Takes the sum out of `swept`, from each vertex after its share of the volume: else there is no solution.
-void balance(const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
-    const double rate = std::accumulate(swept.begin(), swept.end(), 0.0) /
-                        std::accumulate(share.begin(), share.end(), 0.0);
-    for (Vertex v : swept.indices()) swept[v] -= rate * share[v];
+/// Takes the sum over each piece out of `swept`, from each vertex after its share of the volume: else there is no solution.
+void balance(const Pieces& pieces, const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
+    const auto sums = [&](const Array<Vertex, double>& values) {
+        std::vector<double> sum(as_size(pieces.count), 0.0);
+        for (Vertex v : values.indices())
+            if (pieces.of[v] >= 0) sum[as_size(pieces.of[v])] += values[v];
+        return sum;
+    };
+    const std::vector<double> rest = sums(swept), volume = sums(share);
+    for (Vertex v : swept.indices())
+        if (pieces.of[v] >= 0) swept[v] -= rest[as_size(pieces.of[v])] / volume[as_size(pieces.of[v])] * share[v];
 }
 
 /// What a vertex's mass grows by [kg/s], less what the mesh and the velocity bring to it within the region.
@@ -130,16 +135,18 @@ struct Part {
     std::vector<std::size_t> place;  // of each entry, in the pattern's rows
 };
 
-/// Those with a share of the region's volume.
-Part part_of(const Pattern& pattern, const Array<Vertex, double>& share) {
+Part part_of(const Pattern& pattern, const Pieces& pieces) {
     const SparseRows& rows = pattern.rows;
     Part part;
+    part.rows.pieces = pieces.count;
     std::vector<PetscInt> row(pattern.numbering.vertex.size(), -1);
     for (std::size_t r = 0; r < row.size(); ++r) {
         if (static_cast<int>(r) == rows.first_row) part.rows.first_row = static_cast<int>(part.vertex.size());
-        if (!(share[pattern.numbering.vertex[r]] > 0)) continue;
+        const Vertex v = pattern.numbering.vertex[r];
+        if (pieces.of[v] < 0) continue;
         row[r] = static_cast<PetscInt>(part.vertex.size());
-        part.vertex.push_back(pattern.numbering.vertex[r]);
+        part.vertex.push_back(v);
+        part.rows.piece.push_back(pieces.of[v]);
     }
     for (std::size_t r = 0; r < rows.count(); ++r) {
         if (row[static_cast<std::size_t>(rows.first_row) + r] < 0) continue;
@@ -260,9 +267,10 @@ MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& c
         if (std::ranges::all_of(source, [](double s) { return s == 0; })) continue;
         const Array<Vertex, double> share = region == flow.by_mass ? shares_of_mass(current, cells, flow.density)
                                                                    : shares_of_volume(current, cells);
-        balance(share, source);
+        const Pieces pieces = pieces_of(current, cells);
+        balance(pieces, share, source);
         if (!flow.pattern) flow.pattern = std::make_shared<Pattern>(make_pattern(current, living_cells(current), ranks));
-        const Part part = part_of(*flow.pattern, share);
+        const Part part = part_of(*flow.pattern, pieces);
         const std::vector<double> matrix =
             laplacian(current, *flow.pattern, region, region == flow.by_mass ? flow.density : Array<Vertex, double>{}, ranks.watch);
         const LinearSystem system = potential_system(part, matrix, source, share, dt);

@@ -41,7 +41,7 @@ struct MaterialFlow {
 /// The least flow of an incompressible gas beside what `solved` has which makes way for bodies during the step
 /// from `before` to `current` (the same connectivity, dt [s] apart), in each region of `flowing` by itself, such that no
 /// gas passes the region's moving boundary, but as `solved` has it the faces of the box. Where nothing moves, u is
-/// exactly zero. Each region is in one piece.
+/// exactly zero. A region may be in pieces that do not meet.
 ///
 /// In the weak form, with the region's shape at the end of the step, v the velocity and w that of the mesh,
 ///     sum_j A_ij Phi_j = F_i + Q_i - integral of grad phi_i . v,   A_ij = integral of grad phi_i . grad phi_j,
@@ -50,8 +50,8 @@ struct MaterialFlow {
 /// so that F_i is what the surface sweeps, to rounding (see heat.h for what this is good for). A in prisms is
 /// the sum over their points (elements.h), as is what the flow carries; so they agree, to rounding: what is carried by u
 /// is conserved and a constant stays one, though a velocity of finite elements is solenoidal only in the mean. All F_i
-/// together are the growth of the region's volume: zero if bodies keep theirs. If not, gas has no way to go;
-/// then the divergence of u is that growth, spread evenly.
+/// of a piece together are the growth of its volume: zero if bodies keep theirs. If not, gas has no way to go;
+/// then the divergence of u is that growth, spread evenly over the piece.
 ///
 /// With a density, which only one region may have, it is mass that is conserved, not volume: there A_ij is of rho grad
 /// phi_i . grad phi_j, and the right side what makes, at each vertex,

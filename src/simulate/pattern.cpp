@@ -145,7 +145,9 @@ Pattern make_pattern(const Mesh& mesh, const Cells& cells, const Ranks& ranks, U
         for (std::size_t row = part * part_rows; row < std::min(rows, (part + 1) * part_rows); ++row) of.add(row);
         columns[part] = std::move(of).columns();
     }, 1);
-    pattern.rows = {first, {0}, {}};
+    const Pieces pieces = pieces_of(mesh, cells);
+    pattern.rows = {first, {0}, {}, {}, pieces.count};
+    for (Vertex v : pattern.numbering.vertex) pattern.rows.piece.push_back(pieces.of[v]);
     pattern.rows.begin.reserve(rows + 1);
     for (const Columns& part : columns) {
         const auto before = static_cast<PetscInt>(pattern.rows.column.size());

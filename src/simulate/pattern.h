@@ -43,6 +43,9 @@ struct Pattern {
     // Of `upper`, each corner twice: the second time with its further row, if it has one.
     CellsAtRows<8> upper_tets;
     CellsAtRows<12> upper_prisms;
+
+    /// Of a vertex that has an unknown.
+    [[nodiscard]] std::size_t piece_of(Vertex v) const { return rows.piece_of(static_cast<std::size_t>(numbering.row[v])); }
 };
 
 /// `cells` are all of them, the same on each rank. With `upper`, vertices of interfaces have a further row.

@@ -37,13 +37,6 @@ double largest(const Ranks& ranks, double mine) {
     return all;
 }
 
-double total(const Ranks& ranks, const std::vector<double>& mine) {
-    const double sum = std::accumulate(mine.begin(), mine.end(), 0.0);
-    double all = 0;
-    MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, ranks.communicator);
-    return all;
-}
-
 OwnedVec make_vector(const Ranks& ranks, std::size_t size) {
     Vec vector = nullptr;
     check(VecCreateMPI(ranks.communicator, static_cast<PetscInt>(size), PETSC_DETERMINE, &vector));
@@ -153,6 +146,43 @@ private:
     OwnedMat matrix_;  // refers to the values: is destroyed before them
 };
 
+/// The constants of some pieces, which a matrix takes to next to nothing, as PETSc's null space.
+class Constants {
+public:
+    Constants(const Ranks& ranks, const SparseRows& rows, std::vector<char> of_piece)
+        : ranks_(ranks), rows_(rows), of_piece_(std::move(of_piece)),
+          size_(sums_of_pieces(ranks, rows, [](std::size_t) { return 1; })) {
+        MatNullSpace space = nullptr;
+        check(MatNullSpaceCreate(ranks.communicator, PETSC_FALSE, 0, nullptr, &space));
+        space_.reset(space);
+        check(MatNullSpaceSetFunction(space, take_out, this));
+    }
+    Constants(const Constants&) = delete;
+    Constants& operator=(const Constants&) = delete;
+
+    [[nodiscard]] MatNullSpace get() const { return space_.get(); }
+
+private:
+    static PetscErrorCode take_out(MatNullSpace, Vec vector, void* context) {
+        const auto& constants = *static_cast<const Constants*>(context);
+        double* entry = nullptr;
+        if (const PetscErrorCode code = VecGetArray(vector, &entry); code != 0) return code;
+        constants.take_out(entry);
+        return VecRestoreArray(vector, &entry);
+    }
+    void take_out(double* entry) const {
+        std::vector<double> mean = sums_of_pieces(ranks_, rows_, [&](std::size_t r) { return entry[r]; });
+        for (std::size_t p = 0; p < mean.size(); ++p) mean[p] = of_piece_[p] != 0 ? mean[p] / size_[p] : 0;
+        for (std::size_t r = 0; r < rows_.count(); ++r) entry[r] -= mean[rows_.piece_of_owned(r)];
+    }
+
+    const Ranks& ranks_;
+    const SparseRows& rows_;
+    std::vector<char> of_piece_;
+    std::vector<double> size_;  // unknowns of each piece
+    OwnedNullSpace space_;
+};
+
 double largest_size(const std::vector<double>& values) {
     double most = 0;
     for (double value : values) most = std::max(most, std::abs(value));
@@ -213,24 +243,28 @@ double reachable(const Ranks& ranks, const LinearSystem& system) {
     return rounding * (largest(ranks, static_cast<double>(longest)) + 2);
 }
 
-/// Nothing is fixed, and so much exchanged that the matrix hardly knows what is held: balance() finds constants.
-bool loses_constants(const Ranks& ranks, const LinearSystem& system) {
-    std::vector<double> size(system.right.size());
-    for (std::size_t r = 0; r < size.size(); ++r) size[r] = row_size(system, r);
-    return total(ranks, system.row_sum) < hardly_held * total(ranks, size) && system.closed;
+/// In which pieces nothing is fixed, and so much exchanged that the matrix hardly knows what is held: balance() finds
+/// constants.
+std::vector<char> lost_constants(const Ranks& ranks, const LinearSystem& system) {
+    const auto held = sums_of_pieces(ranks, system.rows, [&](std::size_t r) { return system.row_sum[r]; });
+    const auto size = sums_of_pieces(ranks, system.rows, [&](std::size_t r) { return row_size(system, r); });
+    std::vector<char> lost = system.closed;
+    for (std::size_t p = 0; p < lost.size(); ++p)
+        if (!(held[p] < hardly_held * size[p])) lost[p] = 0;
+    return lost;
 }
 
 /// How rows are scaled and constants are treated: what is fixed when a solver is made.
 struct Treatment {
     Preconditioner preconditioner;
     bool alike;             // rows are divided by the same
-    bool without_constants;
+    std::vector<char> without_constants;  // per piece
     bool operator==(const Treatment&) const = default;
 };
 
 Treatment treatment(const Ranks& ranks, const LinearSystem& system, const SolverChoice& choice) {
     return {choice.preconditioner, choice.potential || choice.preconditioner == Preconditioner::multigrid,
-            choice.potential || loses_constants(ranks, system)};
+            choice.potential ? system.closed : lost_constants(ranks, system)};
 }
 
 }  // namespace
@@ -240,6 +274,7 @@ class Krylov {
 public:
     Krylov(const Ranks& ranks, const SparseRows& rows, const Treatment& treatment, const SolverChoice& choice)
         : treatment_(treatment),
+          rows_(rows),
           right_(make_vector(ranks, rows.count())),
           unknown_(make_vector(ranks, rows.count())),
           gathering_(ranks, unknown_.get()),
@@ -264,7 +299,7 @@ public:
     void take(const Ranks& ranks, const LinearSystem& system) {
         scale_ = row_scales(ranks, system, treatment_.alike);
         matrix_.take(system, scale_);
-        if (treatment_.without_constants) leave_constants_out(ranks);
+        if (std::ranges::count(treatment_.without_constants, 1) > 0) leave_constants_out(ranks);
         iterations_ = 0;
         iterations_left_ = most_;
     }
@@ -309,10 +344,8 @@ private:
 
     /// Constants are taken out of every residual; the preconditioner is that of a matrix that is not singular.
     void leave_constants_out(const Ranks& ranks) {
-        MatNullSpace space = nullptr;
-        check(MatNullSpaceCreate(ranks.communicator, PETSC_TRUE, 0, nullptr, &space));
-        constants_.reset(space);
-        check(MatSetNullSpace(matrix_.get(), space));
+        constants_ = std::make_unique<Constants>(ranks, rows_, treatment_.without_constants);
+        check(MatSetNullSpace(matrix_.get(), constants_->get()));
         Mat shifted = nullptr;
         check(MatDuplicate(matrix_.get(), MAT_COPY_VALUES, &shifted));
         regular_.reset(shifted);
@@ -372,12 +405,13 @@ if (choice.preconditioner == Preconditioner::multigrid) {
     }
 
     Treatment treatment_;
+    const SparseRows& rows_;
     std::vector<double> scale_;
     OwnedVec right_, unknown_;
     Gathering gathering_;
     Matrix matrix_;
     OwnedMat regular_;
-    OwnedNullSpace constants_;
+    std::unique_ptr<Constants> constants_;  // referred to by the matrix
     OwnedKsp solver_;
     PetscInt most_ = most_iterations, iterations_left_ = most_iterations;
     int iterations_ = 0;
@@ -393,14 +427,18 @@ namespace {
     throw SolverError(message.str());
 }
 
-/// Where no unknown is fixed, the sum of all equations says what constant is missing in x.
+/// In pieces of which no unknown is fixed, the sum of all equations says what constant is missing in x.
 void balance(const Ranks& ranks, const LinearSystem& system, DoubledUnknown& x, Residual& left) {
-    const double held = total(ranks, system.row_sum);
-    if (!system.closed || !(held > 0)) return;
-    const double missing = total(ranks, left.rest) / held;
-    if (!std::isfinite(missing)) return;
-    for (std::size_t r = 0; r < x.high.size(); ++r) x.add(r, missing);
-    for (std::size_t r = 0; r < left.rest.size(); ++r) left.rest[r] -= system.row_sum[r] * missing;  // no difference changed
+    const SparseRows& rows = system.rows;
+    const auto held = sums_of_pieces(ranks, rows, [&](std::size_t r) { return system.row_sum[r]; });
+    std::vector<double> missing = sums_of_pieces(ranks, rows, [&](std::size_t r) { return left.rest[r]; });
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+        missing[p] /= held[p];
+        if (system.closed[p] == 0 || !(held[p] > 0) || !std::isfinite(missing[p])) missing[p] = 0;
+    }
+    for (std::size_t r = 0; r < x.high.size(); ++r) x.add(r, missing[rows.piece_of(r)]);
+    for (std::size_t r = 0; r < left.rest.size(); ++r)  // no difference changed
+        left.rest[r] -= system.row_sum[r] * missing[rows.piece_of_owned(r)];
     measure(ranks, system, x, left);
 }
 
