@@ -14,11 +14,11 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellTypes.h>
+#include <vtkDataArraySelection.h>
 #include <vtkFieldData.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
 #include <vtkPointData.h>
-#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -34,15 +34,17 @@
 namespace kropla {
 namespace {
 
-vtkSmartPointer<vtkUnstructuredGrid> parse(const std::filesystem::path& path, const std::string& bytes) {
+vtkSmartPointer<vtkUnstructuredGrid> parse(const std::filesystem::path& path, const std::string& bytes, const VtuText& text) {
     const CaughtErrors errors;
     try {
         vtkNew<vtkXMLUnstructuredGridReader> reader;
         reader->ReadFromInputStringOn();
         reader->SetInputString(bytes);
+        for (const std::string& name : text.of_points) reader->GetPointDataArraySelection()->DisableArray(name.c_str());
+        for (const std::string& name : text.of_cells) reader->GetCellDataArraySelection()->DisableArray(name.c_str());
         reader->Update();
         if (!errors.first().empty()) fail(path, "is damaged: " + errors.first());
-        if (reader->GetErrorCode() != 0) fail(path, "is damaged: VTK cannot read it");
+        if (reader->GetErrorCode() != 0 || (text.cells > 0 && reader->GetOutput()->GetNumberOfCells() == 0)) fail(path, "is damaged: VTK cannot read it");
         return reader->GetOutput();
     } catch (const std::bad_alloc&) {
         fail(path, "asks for more memory than there is: damaged, or too large");
@@ -152,15 +154,18 @@ bool read_facet(const std::filesystem::path& path, vtkUnstructuredGrid& grid, vt
     return true;
 }
 
-/// From an array of texts, "3 rotor", of the whole file.
+/// From an array of texts, "3 rotor", of the whole file: of their bytes, each text with a zero at its end.
 Names read_names(vtkUnstructuredGrid& grid, const char* array_name) {
     Names names;
-    const auto* array = vtkStringArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray(array_name));
-    for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfValues(); ++i) {
-        const std::string text = const_cast<vtkStringArray*>(array)->GetValue(i);
+    std::string texts;
+    auto* const bytes = vtkUnsignedCharArray::SafeDownCast(grid.GetFieldData()->GetAbstractArray(array_name));
+    for (vtkIdType i = 0; bytes != nullptr && i < bytes->GetNumberOfValues(); ++i)
+        texts += static_cast<char>(bytes->GetValue(i));
+    for (std::size_t at = 0, end = texts.find('\0'); end != std::string::npos; at = end + 1, end = texts.find('\0', at)) {
+        const std::string text = texts.substr(at, end - at);
         int number = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-        if (error == std::errc() && end != text.data() + text.size() && *end == ' ') names[number] = end + 1;
+        const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        if (error == std::errc() && rest != text.data() + text.size() && *rest == ' ') names[number] = rest + 1;
     }
     return names;
 }
@@ -245,10 +250,10 @@ Patch patch_of(const Mesh& mesh, Facet facet, const BoundingBox& box) {
 }  // namespace
 
 FileCells read_vtu_cells(const std::filesystem::path& path, const Watch* watch) {
-    const std::string bytes = read_file(path);
-    check_vtu_text(path, bytes);
+    std::string bytes = read_file(path);
+    const VtuText text = check_vtu_text(path, bytes);
     heed(watch);
-    const auto grid = parse(path, bytes);
+    const auto grid = parse(path, bytes, text);
     heed(watch);
     FileCells cells;
     cells.position = read_positions(path, *grid);

@@ -19,7 +19,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,7 +39,9 @@ struct Layout {
     std::size_t word = 4;       // [bytes] of a number in an array's header
     bool big_endian = false, compressed = false, raw = false;
     std::uint64_t points = 0, cells = 0;  // of the piece
-    std::string_view section;             // PointData, CellData, Points or Cells
+    std::string_view section;             // FieldData, PointData, CellData, Points or Cells
+    VtuText text;
+    std::vector<std::pair<std::string_view, std::string>> changes;  // what stands in the text, and what is to
 };
 
 std::optional<std::uint64_t> number(std::string_view element, std::string_view name) {
@@ -121,9 +125,10 @@ std::optional<std::uint64_t> unpacked_size(std::string_view array, bool base64, 
 /// The size of the array's data [bytes], or nothing if it is not in the file as a whole.
 std::optional<std::uint64_t> stored_size(std::string_view array, bool base64, const Layout& layout) {
     if (layout.compressed) return unpacked_size(array, base64, layout);
-    if (base64) return array.size() / 4 * 3;
-    if (array.size() < layout.word) return {};
-    const std::uint64_t size = read_word(array, 0, layout);
+    const std::string header = base64 ? decoded(array, layout.word) : std::string(array.substr(0, layout.word));
+    if (header.size() < layout.word) return {};
+    const std::uint64_t size = read_word(header, 0, layout);
+    if (base64) return size <= array.size() / 4 * 3 ? std::optional(size) : std::nullopt;
     return size <= array.size() - layout.word ? std::optional(size) : std::nullopt;
 }
 
@@ -137,18 +142,78 @@ std::uint64_t width_of(std::string_view type) {
     return 0;
 }
 
+template <class Number>
+bool is_number(std::string_view word) {
+    Number value;
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size() && std::isfinite(static_cast<double>(value));
+}
+
+/// A number that this type can hold; texts are the numbers of their letters.
+bool is_value(std::string_view word, std::string_view type) {
+    if (type == "Int8") return is_number<std::int8_t>(word);
+    if (type == "UInt8" || type == "String") return is_number<std::uint8_t>(word);
+    if (type == "Int16") return is_number<std::int16_t>(word);
+    if (type == "UInt16") return is_number<std::uint16_t>(word);
+    if (type == "Int32") return is_number<std::int32_t>(word);
+    if (type == "UInt32") return is_number<std::uint32_t>(word);
+    if (type == "Int64") return is_number<std::int64_t>(word);
+    if (type == "UInt64") return is_number<std::uint64_t>(word);
+    return is_number<double>(word);
+}
+
+/// How many values of an array are in plain text. Throws FileError if one is none of the type.
+std::uint64_t count_values(const std::filesystem::path& path, const std::string& name, std::string_view type,
+                           std::string_view text) {
+    constexpr std::string_view blanks = " \t\r\n";
+    std::uint64_t count = 0;
+    for (std::size_t at = text.find_first_not_of(blanks); at != std::string_view::npos; at = text.find_first_not_of(blanks, at)) {
+        const std::size_t end = std::min(text.find_first_of(blanks, at), text.size());
+        const std::string_view word = text.substr(at, end - at);
+        if (!is_value(word, type))
+            fail(path, "is damaged: the array " + name + " holds \"" + std::string(word.substr(0, 40)) +
+                           "\", which is no finite number of the type " + std::string(type));
+        ++count;
+        at = end;
+    }
+    return count;
+}
+
 /// How many values each component of this array has; nothing: it is not said.
-std::optional<std::uint64_t> promised_values(std::string_view name, const Layout& layout) {
+std::optional<std::uint64_t> promised_values(std::string_view element, std::string_view name, const Layout& layout) {
+    if (layout.section == "FieldData") return number(element, "NumberOfTuples");
     if (layout.section == "PointData" || layout.section == "Points") return layout.points;
     if (layout.section == "CellData") return layout.cells;
     if (layout.section == "Cells" && (name == "offsets" || name == "types")) return layout.cells;
     return {};
 }
 
+/// An array of texts of the whole file, of so many bytes: is to be read as bytes.
+void take_as_bytes(std::string_view element, std::uint64_t bytes, Layout& layout) {
+    layout.changes.emplace_back(*xml_attribute(element, "type"), "UInt8");
+    if (const auto count = xml_attribute(element, "NumberOfTuples")) layout.changes.emplace_back(*count, std::to_string(bytes));
+    if (const auto count = xml_attribute(element, "NumberOfComponents")) layout.changes.emplace_back(*count, "1");
+}
+
+void change(std::string& bytes, std::vector<std::pair<std::string_view, std::string>> changes) {
+    std::vector<std::size_t> at;
+    std::ranges::sort(changes, std::ranges::greater(), [](const auto& c) { return c.first.data(); });
+    for (const auto& [old, value] : changes) at.push_back(static_cast<std::size_t>(old.data() - bytes.data()));
+    for (std::size_t i = 0; i < at.size(); ++i) bytes.replace(at[i], changes[i].first.size(), changes[i].second);
+}
+
 /// `content` is what follows the element.
 void check_array(const std::filesystem::path& path, std::string_view element, std::string_view content,
-                 const Layout& layout) {
+                 Layout& layout) {
     const std::string name(xml_attribute(element, "Name").value_or(""));
+    const std::string_view type = xml_attribute(element, "type").value_or("");
+    if (width_of(type) == 0 && type != "String" && type != "Bit")
+        fail(path, "the array " + name + " has the type \"" + std::string(type) + "\", which is none of VTK's for files");
+    if (type == "String" && layout.section == "PointData") return layout.text.of_points.push_back(unescaped(name));
+    if (type == "String" && layout.section == "CellData") return layout.text.of_cells.push_back(unescaped(name));
+    const auto components = xml_attribute(element, "NumberOfComponents") ? number(element, "NumberOfComponents") : 1;
+    if (!components) fail(path, "is damaged: the array " + name + " does not say how many components it has");
     const bool appended = xml_attribute(element, "format") == "appended";
     if (appended) {
         const auto offset = number(element, "offset");
@@ -159,14 +224,20 @@ void check_array(const std::filesystem::path& path, std::string_view element, st
         content = content.substr(0, content.find('<'));
         content.remove_prefix(std::min(content.find_first_not_of(" \t\r\n"), content.size()));
     } else {
-        return;  // in plain text, which VTK reads with care
+        content = content.substr(0, content.find('<'));
+        const std::uint64_t count = count_values(path, name, type, content);
+        if (type == "String") return take_as_bytes(element, count, layout);
+        const std::uint64_t values = promised_values(element, name, layout).value_or(0);
+        if (values > 0 && *components > count / values)
+            fail(path, "is damaged: the array " + name + " has fewer values than are promised");
+        return;
     }
     const auto size = stored_size(content, !appended || !layout.raw, layout);
     if (!size) fail(path, "is damaged: the sizes of the array " + name + " are impossible");
-    const std::uint64_t values = promised_values(name, layout).value_or(0);
-    const std::uint64_t width = width_of(xml_attribute(element, "type").value_or(""));
-    const std::uint64_t components = number(element, "NumberOfComponents").value_or(1);
-    if (values > 0 && width > 0 && components > *size / width / values)
+    if (type == "String") return take_as_bytes(element, *size, layout);
+    const std::uint64_t values = promised_values(element, name, layout).value_or(0);
+    const std::uint64_t width = width_of(type);
+    if (values > 0 && width > 0 && *components > *size / width / values)
         fail(path, "is damaged: the array " + name + " has fewer values than are promised");
 }
 
@@ -185,16 +256,18 @@ void look_at(const std::filesystem::path& path, std::string_view text, std::size
             fail(path, "is damaged: it promises more vertices or cells than it can hold");
         layout.points = *points;
         layout.cells = *cells;
-    } else if (name == "PointData" || name == "CellData" || name == "Points" || name == "Cells") {
+        layout.text.cells += *cells;
+    } else if (name == "FieldData" || name == "PointData" || name == "CellData" || name == "Points" || name == "Cells") {
         layout.section = name;
-    } else if (name == "DataArray") {
+    } else if (name == "DataArray" || name == "Array") {
         check_array(path, element, text.substr(std::min(element.size() + 1, text.size())), layout);
     }
 }
 
 }  // namespace
 
-void check_vtu_text(const std::filesystem::path& path, std::string_view bytes) {
+VtuText check_vtu_text(const std::filesystem::path& path, std::string& whole) {
+    const std::string_view bytes = whole;
     if (bytes.empty()) fail(path, "is empty");
     const std::size_t start = bytes.substr(0, 4096).find("<VTKFile");
     if (start == std::string_view::npos) fail(path, "is not a VTU file");
@@ -217,6 +290,8 @@ void check_vtu_text(const std::filesystem::path& path, std::string_view bytes) {
     }
     for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1))
         look_at(path, text.substr(at + 1), bytes.size(), layout);
+    change(whole, std::move(layout.changes));
+    return std::move(layout.text);
 }
 
 }  // namespace kropla
