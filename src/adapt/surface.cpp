@@ -223,7 +223,7 @@ struct Meeting {
     Freedom free;
 };
 /// Nothing if both are on faces and either is on one that the other is not on; or if their edge is not in the face.
-std::optional<Meeting> meeting_of(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line) {
+std::optional<Meeting> meeting_by_faces(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line) {
     const Vec3 &p = mesh.position[a.vertex], &q = mesh.position[b.vertex];
     if (!a.free.all() && !b.free.all() && !on_line) return std::nullopt;
     if (a.free == b.free) return Meeting{0.5 * (p + q), a.free};
@@ -235,6 +235,31 @@ std::optional<Meeting> meeting_of(const Mesh& mesh, const SurfaceStar& a, const 
     if (is_freer(a.free, b.free)) return Meeting{q, b.free};
     if (is_freer(b.free, a.free)) return Meeting{p, a.free};
     return std::nullopt;
+}
+
+/// How much the sharp edges at a vertex hold it: it is on none, on one that goes on nearly straight or ends on a face, or in
+/// a corner.
+enum class Held { not_at_all, to_edge, in_corner };
+Held held_by_edges(const Mesh& mesh, const SurfaceStar& star, std::span<const Vertex> sharp_ends) {
+    if (sharp_ends.empty()) return Held::not_at_all;
+    if (sharp_ends.size() == 1) return star.free.all() ? Held::in_corner : Held::to_edge;
+    const Vec3 &x = mesh.position[star.vertex], one = mesh.position[sharp_ends[0]] - x, other = mesh.position[sharp_ends[1]] - x;
+    const bool straight = star.free.all() && sharp_ends.size() == 2 && -dot(one, other) > least_agreement * norm(one) * norm(other);
+    return straight ? Held::to_edge : Held::in_corner;
+}
+
+/// As by the faces of the box, but that neither leaves a sharp edge on which it is. Nothing if the faces want it otherwise.
+std::optional<Meeting> meeting_of(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line) {
+    const auto meeting = meeting_by_faces(mesh, a, b, on_line);
+    const std::vector<Vertex> at_a = sharp_ends(a, mesh), at_b = sharp_ends(b, mesh);
+    const Held of_a = held_by_edges(mesh, a, at_a), of_b = held_by_edges(mesh, b, at_b);
+    if (!meeting || (of_a == Held::not_at_all && of_b == Held::not_at_all)) return meeting;
+    const bool along_edge = std::ranges::find(at_a, b.vertex) != at_a.end();
+    if (of_a != Held::not_at_all && of_b != Held::not_at_all && !along_edge) return std::nullopt;
+    if (of_a == of_b) return of_a == Held::in_corner ? std::nullopt : meeting;
+    const SurfaceStar& held = of_a > of_b ? a : b;
+    if (!(held.free == meeting->free)) return std::nullopt;
+    return Meeting{mesh.position[held.vertex], held.free};
 }
 
 /// Where the one vertex keeps the volume that both had, nearest to where they meet.
@@ -276,12 +301,17 @@ std::optional<std::vector<ComesToBoundary>> coming_to_boundary(const Mesh& mesh,
     return all;
 }
 
-/// Do the triangles over the outline look where those looked that they replace, and is none of their sides too long?
-bool is_fair(const Mesh& mesh, std::span<const std::array<Vertex, 2>> outline, const Vec3& at, const Vec3& normal,
-             double longest) {
+/// Do the triangles over the outline of two stars look where all of these looked, or, at a sharp edge, each where that looked
+/// which it replaces; and is none of their sides too long?
+bool is_fair(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, std::span<const std::array<Vertex, 2>> outline,
+             const Vec3& at, double longest) {
+    const bool at_edge = is_sharp(a, mesh) || is_sharp(b, mesh);
+    const Vec3 all = twice_area(a, mesh) + twice_area(b, mesh);
     return std::ranges::all_of(outline, [&](const std::array<Vertex, 2>& side) {
-        const Vec3 is = twice_area(at, mesh.position[side[0]], mesh.position[side[1]]);
-        return dot(is, normal) > least_agreement * norm(is) * norm(normal) && distance(at, mesh.position[side[0]]) <= longest;
+        const Vec3 &p = mesh.position[side[0]], &q = mesh.position[side[1]];
+        const Vertex end = std::ranges::find(a.sides, side) != a.sides.end() ? a.vertex : b.vertex;
+        const Vec3 is = twice_area(at, p, q), was = at_edge ? twice_area(mesh.position[end], p, q) : all;
+        return dot(is, was) > least_agreement * norm(is) * norm(was) && distance(at, p) <= longest;
     });
 }
 
@@ -291,13 +321,13 @@ std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Regio
     const SurfaceStar a = surface_star(mesh, edge.a, region), b = surface_star(mesh, edge.b, region);
     const auto has_b = [&](const std::array<Vertex, 2>& side) { return side[0] == edge.b || side[1] == edge.b; };
     const bool on_line = std::ranges::count_if(a.sides, has_b) == 1;
-    if (count_shared(a, b) != (on_line ? 1 : 2) || is_sharp(a, mesh) || is_sharp(b, mesh)) return std::nullopt;
+    if (count_shared(a, b) != (on_line ? 1 : 2)) return std::nullopt;
     const auto meeting = meeting_of(mesh, a, b, on_line);
     const auto to_boundary = coming_to_boundary(mesh, edge, a.cells);
     if (!meeting || !to_boundary) return std::nullopt;
     const auto around = outline(a, b);
     const auto at = place_of_one(mesh, a, b, *meeting, around, region);
-    if (!at || !is_fair(mesh, around, *at, twice_area(a, mesh) + twice_area(b, mesh), longest)) return std::nullopt;
+    if (!at || !is_fair(mesh, a, b, around, *at, longest)) return std::nullopt;
 
     SurfaceChange change;
     auto& removed = change.cavity.removed;

@@ -11,7 +11,7 @@ namespace kropla {
 
 // Operators on the surface of a region that deforms. Each keeps the volume of the region, to rounding, within the cells it
 // changes, so that what is carried from mesh to mesh keeps its integral and its bounds there; none touches a sharp edge but
-// to split it. Where the surface ends on faces of the box, its line stays there: vertices of it move along the faces, or not at
+// to split it or to shorten it along itself. Where the surface ends on faces of the box, its line stays there: vertices of it move along the faces, or not at
 // all on those on which it is `pinned`, a bit each.
 
 /// A vertex, and where it is to stand.
@@ -37,9 +37,10 @@ Replacement carry_out_surface(Mesh& mesh, const SurfaceChange& change, Changes& 
 /// A new vertex in the middle of the edge: flat, the volume inside is what it was.
 [[nodiscard]] SurfaceChange surface_split(const Mesh& mesh, const Shell& shell, Edge edge);
 
-/// Both ends become one vertex near the edge's middle, or on the face of the box if one end is on it, where it keeps the volume [Lindstrom, Turk 1998, "Fast and memory
-/// efficient polygonal simplification"]. Nothing if an end is on a sharp edge, if the surface would touch itself or fold, or
-/// if a triangle's side would exceed `longest` [m].
+/// Both ends become one vertex near the edge's middle, or on the face of the box, on the sharp edge or in the corner if one
+/// end is there, where it keeps the volume [Lindstrom, Turk 1998, "Fast and memory efficient polygonal simplification"].
+/// Nothing if both are on sharp edges and this is none, if the surface would touch itself or fold, or if a triangle's side
+/// would exceed `longest` [m].
 [[nodiscard]] std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Region region, double longest);
 
 /// The other diagonal of the two triangles at the edge, its four vertices shifted together along the normal by what that

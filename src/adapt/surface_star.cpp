@@ -79,14 +79,15 @@ bool is_sharp(const Vec3& one_normal, const Vec3& other_normal) {
     return dot(one_normal, other_normal) < sharp * norm(one_normal) * norm(other_normal);
 }
 
-bool is_sharp(const SurfaceStar& star, const Mesh& mesh) {
+std::vector<Vertex> sharp_ends(const SurfaceStar& star, const Mesh& mesh) {
     const auto normal = [&](const std::array<Vertex, 2>& side) {
         return twice_area(mesh.position[star.vertex], mesh.position[side[0]], mesh.position[side[1]]);
     };
+    std::vector<Vertex> ends;
     for (const auto& side : star.sides)
         for (const auto& next : star.sides)
-            if (next[0] == side[1] && is_sharp(normal(side), normal(next))) return true;
-    return false;
+            if (next[0] == side[1] && is_sharp(normal(side), normal(next))) ends.push_back(side[1]);
+    return ends;
 }
 
 std::vector<Vertex> ring(const SurfaceStar& star) {
@@ -100,8 +101,8 @@ std::vector<Vertex> two_rings(const Mesh& mesh, const SurfaceStar& star, Region 
     std::vector<Vertex> vertices = ring(star);
     const std::vector<Vertex> first = vertices;
     for (Vertex v : first)
-        for (const auto& side : surface_star(mesh, v, region).sides)
-            vertices.insert(vertices.end(), side.begin(), side.end());
+        if (const SurfaceStar next = surface_star(mesh, v, region); !is_sharp(next, mesh))
+            for (const auto& side : next.sides) vertices.insert(vertices.end(), side.begin(), side.end());
     sort_once(vertices);
     std::erase(vertices, star.vertex);
     return vertices;

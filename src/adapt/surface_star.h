@@ -34,12 +34,13 @@ struct SurfaceStar {
 /// is: with the vertex somewhere else, the volume inside grows by a sixth of its product with the displacement.
 [[nodiscard]] Vec3 twice_area(const SurfaceStar& star, const Mesh& mesh);
 
-/// Do two of the triangles around the vertex meet at a sharp edge?
-[[nodiscard]] bool is_sharp(const SurfaceStar& star, const Mesh& mesh);
+/// The other ends of the sharp edges at the vertex: at which two of the triangles around it meet so.
+[[nodiscard]] std::vector<Vertex> sharp_ends(const SurfaceStar& star, const Mesh& mesh);
+[[nodiscard]] inline bool is_sharp(const SurfaceStar& star, const Mesh& mesh) { return !sharp_ends(star, mesh).empty(); }
 /// Do these normals make a sharp edge?
 [[nodiscard]] bool is_sharp(const Vec3& one_normal, const Vec3& other_normal);
 
-/// The vertices of the surface around the star's, in ascending order; and those within two edges.
+/// The vertices of the surface around the star's, in ascending order; and those within two edges, but not beyond sharp ones.
 [[nodiscard]] std::vector<Vertex> ring(const SurfaceStar& star);
 [[nodiscard]] std::vector<Vertex> two_rings(const Mesh& mesh, const SurfaceStar& star, Region region);
 

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace kropla {
@@ -103,7 +104,15 @@ TEST(SurfaceOperators, AVertexOfASplitComesToBeOnTheSphere) {
     EXPECT_LE(raised, 0.25 * flat);
 }
 
-TEST(SurfaceOperators, SharpEdgesAreLeftAlone) {
+double largest(const Vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); }
+/// How many coordinates are those of the cube's faces: 2 on an edge, 3 in a corner.
+int count_faces(const Vec3& x) {
+    int count = 0;
+    for (int axis = 0; axis < 3; ++axis) count += std::abs(std::abs(x[axis]) - 0.5) < 1e-12 ? 1 : 0;
+    return count;
+}
+
+TEST(SurfaceOperators, SharpEdgesStayWhereTheyAre) {
     std::vector<Vec3> corners;
     for (int i = 0; i < 8; ++i) corners.push_back({i % 2 - 0.5, i / 2 % 2 - 0.5, i / 4 - 0.5});
     const std::vector<std::array<int, 3>> triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
@@ -111,19 +120,33 @@ TEST(SurfaceOperators, SharpEdgesAreLeftAlone) {
     Domain domain = finer_sphere();
     domain.bodies.front().shape = shape_within(corners, triangles);
     const Mesh mesh = initial_mesh(domain, 1);
-    int sharp = 0, smooth = 0;
+    int sharp = 0, smooth = 0, collapses = 0;
     for (const Edge edge : edges_of(deforming_surfaces(domain, mesh).front())) {
+        const Vec3 &a = mesh.position[edge.a], &b = mesh.position[edge.b];
+        ASSERT_NEAR(largest(a), 0.5, 1e-12);
+        if (const auto change = surface_collapse(mesh, edge, body, 10)) {
+            const Vec3 at = change->cavity.inserted.front();
+            EXPECT_NEAR(largest(at), 0.5, 1e-12);
+            EXPECT_GE(count_faces(at), std::max(count_faces(a), count_faces(b)));
+            collapses += count_faces(at) > 1 ? 1 : 0;
+        }
         if (!is_sharp(surface_star(mesh, edge.a, body), mesh)) {
             ++smooth;
             continue;
         }
         ++sharp;
-        EXPECT_FALSE(surface_collapse(mesh, edge, body, 10));
         EXPECT_FALSE(slide(mesh, edge.a, body));
         EXPECT_FALSE(raise_to_quadric(mesh, edge.a, body));
     }
     EXPECT_GE(sharp, 60);
     EXPECT_GE(smooth, 60);
+    EXPECT_GE(collapses, 60);
+    for (Vertex v : mesh.position.indices()) {
+        const SurfaceStar star = surface_star(mesh, v, body);
+        if (star.sides.empty() || is_sharp(star, mesh)) continue;
+        const auto height = height_of_quadric(mesh, star, body);
+        EXPECT_NEAR(height.value_or(0), 0, 1e-12);
+    }
 }
 
 }  // namespace

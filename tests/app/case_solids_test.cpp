@@ -86,6 +86,40 @@ TEST(RunSolids, AWireIsFedTowardsAPool) {
     EXPECT_EQ(kropla_program(folder, "check d").code, 0);
 }
 
+// Its sharp edges get shorter, at last by more than a triangle; what is left of it stays a box.
+TEST(RunSolids, ABlockLeavesThroughACorner) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", R"toml([domain]
+min = [-1.5, -1.5, -1.5]
+max = [1.5, 1.5, 1.5]
+[[body]]
+name = "block"
+shape = "slab"
+min = [-2.5, -2.5, -2.5]
+max = [-0.4, -0.3, -0.2]
+[body.motion]
+x = "-0.3*t"
+y = "0.3*t"
+z = "-0.2*t"
+[size]
+surface = 0.2
+growth = 0.3
+far = 0.8
+[time]
+end = 2
+steps = 10
+)toml");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto columns = lasting_columns(folder.path / "d");
+    for (std::size_t step = 0; step < columns.at("time").size(); ++step) {
+        const double t = std::stod(columns.at("time")[step]), x = 1.1 - 0.3 * t, y = 1.2 + 0.3 * t, z = 1.3 - 0.2 * t;
+        EXPECT_NEAR(std::stod(columns.at("volume_block")[step]), x * y * z, 1e-12);
+        EXPECT_NEAR(std::stod(columns.at("area_block")[step]), x * y + y * z + z * x, 1e-12);
+    }
+    for (const std::string& r : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(r), 6);
+}
+
 constexpr std::string_view plate_case = R"toml([domain]
 min = [-1, -1, -0.5]
 max = [1, 1, 1.5]
