@@ -1,3 +1,8 @@
 #include "app/commands.h"
 
-int main(int count, char** arguments) { return kropla::execute({arguments + 1, arguments + count}); }
+#include <csignal>
+
+int main(int count, char** arguments) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may grow no further is an error of writing as others are
+    return kropla::execute({arguments + 1, arguments + count});
+}

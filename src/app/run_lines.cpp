@@ -57,7 +57,7 @@ std::string body_line(const BodyResult& body, const RunResults& results) {
     const bool in_a_flow = !body.force.empty();
     const std::string speed =
         goes && in_a_flow ? ", going at " + spoken_quantity(norm(body.velocity.back()), "m/s") : "";
-    return fmt::format("{}: {}{} {}{}", body.name, heat, goes ? "now at" : "at rest at",
+    return fmt::format("{}: {}{} {}{}", body.name, heat, goes ? "now at" : "still at",
                        plain(place_with_unit(body.place.back(), length_scale(body))), speed);
 }
 

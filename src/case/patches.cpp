@@ -64,6 +64,9 @@ std::string_view key_of(const CaseTable& table, const Case& given, const std::st
 void rename_keys(const CaseTable& owner, const Case& given, toml::table& table) {
     if (!owner.has("face") || !owner.holds_table("face")) return;
     const CaseTable face = owner.table("face");
+    std::vector<std::string> known(face_keys.begin(), face_keys.end());
+    for (const auto& [name, patch] : given.mesh->faces) known.push_back(name);
+    face.allow(known);
     toml::table& keys = *table["face"].as_table();
     for (const std::string& name : face.keys()) {
         const std::string_view key = key_of(face, given, name);

@@ -55,7 +55,7 @@ void add_facet(const Mesh& mesh, Tet t, int corner, Facets& facets) {
     }
     const Layer layer = layer_at(mesh, mesh.patch[t][i]);
     if (!layer.exists())
-        throw DomainError("region " + std::to_string(region.value) + " reaches the boundary of the mesh at " +
+        throw DomainError("it reaches the boundary of the mesh at " +
                           place_words(middle(mesh, vertices)) + ": it has no closed surface within it");
     if (layer_of(mesh, layer).region != region) facets.add(mesh, vertices);
 }

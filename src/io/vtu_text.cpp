@@ -173,7 +173,7 @@ std::uint64_t count_values(const std::filesystem::path& path, const std::string&
         const std::string_view word = text.substr(at, end - at);
         if (!is_value(word, type))
             fail(path, "is damaged: the array " + name + " holds \"" + std::string(word.substr(0, 40)) +
-                           "\", which is no finite number of the type " + std::string(type));
+                           "\", which is not a finite number of the type " + std::string(type));
         ++count;
         at = end;
     }

@@ -85,7 +85,7 @@ std::string draw_bodies(const RunResults& results) {
         const double size = length_scale(body);
         cells.insert(cells.end(),
                      {place_with_unit(body.start_place, size), place_with_unit(body.place.back(), size),
-                      moves(body) ? with_unit(norm(body.velocity.back()), "m/s", 3) : "at rest"});
+                      with_unit(moves(body) ? norm(body.velocity.back()) : 0, "m/s", 3)});
         if (in_a_flow) std::ranges::copy(flow_cells(body), std::back_inserter(cells));
         cells.push_back(volume(body));
         html += table_row("td", cells);

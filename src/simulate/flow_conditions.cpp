@@ -16,6 +16,7 @@ namespace {
 
 constexpr double unbalanced =
     0.01;  // [-] of all that passes the boundary: beyond what its facets' shape explains
+constexpr double along = 1e-6;  // [-] of a velocity: with less across a facet it goes along it
 constexpr std::array<const char*, 6> face_names = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
 bool is_fluid(const FlowOptions& options, Region region) {
@@ -95,6 +96,21 @@ void fix_face(const Step& step, std::size_t face, const std::vector<Vertex>& ver
 
 void let_slip(std::size_t face, const std::vector<Vertex>& vertices, FlowConditions& conditions) {
     for (Vertex v : vertices) conditions.fixed[v][face / 2] = true;
+}
+
+/// Of the box and others, that hold what flows.
+std::vector<std::array<Vertex, 3>> walls_of(const FlowOptions& options, const FlowBoundary& boundary) {
+    std::vector<std::array<Vertex, 3>> walls = boundary.fixed_walls;
+    for (std::size_t face = 0; face < 6; ++face)
+        if (options.faces[face].kind == FlowFace::Kind::wall)
+            walls.insert(walls.end(), boundary.faces[face].begin(), boundary.faces[face].end());
+    return walls;
+}
+
+/// Does a velocity go through a facet, and not along it?
+bool passes(const std::array<Vertex, 3>& facet, const Array<Vertex, Vec3>& position, const Vec3& velocity) {
+    const Vec3 area = cross(position[facet[1]] - position[facet[0]], position[facet[2]] - position[facet[0]]);
+    return std::abs(dot(area, velocity)) > along * norm(area) * norm(velocity);
 }
 
 void fix_solid(const Step& step, const SolidSurface& solid, FlowConditions& conditions) {
@@ -209,7 +225,7 @@ FlowBoundary flow_boundary(const Mesh& mesh, const FlowOptions& options, double 
     FlowBoundary boundary;
     const Cells cells = flow_cells(mesh, options);
     boundary.faces = facets_of_faces(mesh, cells);
-    boundary.fixed_walls = vertices_of(facets_of_fixed_walls(mesh, cells));
+    boundary.fixed_walls = facets_of_fixed_walls(mesh, cells);
     const auto ends = ends_of_flow(mesh, options);
     for (std::size_t r = 1; r < options.regions.size(); ++r) {
         const Region body(r);
@@ -245,14 +261,19 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
         if (conditions.open[face])
             for (Vertex v : vertices[face]) conditions.closed[pattern.piece_of(v)] = 0;
     }
+    Array<Vertex, char> passing(count, 0);  // vertices at which what is given passes its face
     for (std::size_t face = 6; face-- > 0;)
-        if (options.faces[face].kind == FlowFace::Kind::velocity)
+        if (options.faces[face].kind == FlowFace::Kind::velocity) {
             fix_face(step, face, vertices[face], conditions);
+            for (Vertex v : vertices[face]) passing[v] = conditions.end[v][static_cast<int>(face / 2)] != 0 ? 1 : 0;
+        }
+    const std::vector<std::array<Vertex, 3>> walls = walls_of(options, boundary);
+    for (const auto& facet : walls)
+        for (Vertex v : facet)
+            if (passing[v] != 0 && passes(facet, current.position, conditions.end[v])) passing[v] = 0;
     const auto at_rest = [](const Vec3&, double) { return Vec3{}; };
-    for (std::size_t face = 0; face < 6; ++face)
-        if (options.faces[face].kind == FlowFace::Kind::wall)
-            for (Vertex v : vertices[face]) fix(step, v, at_rest, "", conditions);
-    for (Vertex v : boundary.fixed_walls) fix(step, v, at_rest, "", conditions);
+    for (Vertex v : vertices_of(walls))
+        if (passing[v] == 0) fix(step, v, at_rest, "", conditions);
     for (const LiquidSurface& liquid : boundary.liquids)
         for (const ContactLine& line : liquid.lines)
             if (!line.cosine && options.faces[line.face].kind == FlowFace::Kind::slip)

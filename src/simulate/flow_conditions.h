@@ -24,7 +24,7 @@ struct FlowBoundary {
     std::array<std::vector<std::array<Vertex, 3>>, 6> faces;  // normals out of the box
     std::vector<SolidSurface> solids;
     std::vector<LiquidSurface> liquids;       // of regions 1, 2, ... that flow, where they meet another that does
-    std::vector<Vertex> fixed_walls;  // that are no faces of the box: no slip; ascending
+    std::vector<std::array<Vertex, 3>> fixed_walls;  // that are no faces of the box: no slip
 };
 
 /// What is given in a step. The same on all ranks.

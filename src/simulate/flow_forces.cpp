@@ -26,7 +26,8 @@ Array<Vertex, unsigned> faces_at(const FlowBoundary& boundary, std::size_t verti
             for (Vertex v : facet) faces[v] |= 1u << face;
     for (const SolidSurface& solid : boundary.solids)
         for (Vertex v : solid.vertices) faces[v] = 0;
-    for (Vertex v : boundary.fixed_walls) faces[v] = 0;
+    for (const auto& facet : boundary.fixed_walls)
+        for (Vertex v : facet) faces[v] = 0;
     return faces;
 }
 

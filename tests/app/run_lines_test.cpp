@@ -29,7 +29,7 @@ TEST(ClosingLines, SayOfManyBodiesTheFirstTwo) {
     const std::string where = folder.path.string();
     EXPECT_EQ(closing_lines(folder.path, 75),
               (std::vector<std::string>{"done: 1 step to 250 ms in 1:15, worst R/r 5.0",
-                                        "a: at rest at (0.00, 2.00, 0.00) m", "b: at rest at (0.00, 0.00, 5.00) um",
+                                        "a: still at (0.00, 2.00, 0.00) m", "b: still at (0.00, 0.00, 5.00) um",
                                         "and 1 body more",
                                         "see " + where + "/report.html, or paraview " + where + "/frames.pvd"}));
 }

@@ -99,15 +99,15 @@ TEST(DamagedVtu, ValuesInPlainTextAreOfTheirTypeAndAllThere) {
     expect(array_of("Float64", "1 2 3"), "", "", "the array a has fewer values than are promised");
     expect(array_of("Float64", "1 2 3 4", "NumberOfComponents=\"2\""), "", "", "has fewer values");
     expect(array_of("Float64", "1 2 3 4", "NumberOfComponents=\"-1\""), "", "", "how many components");
-    expect(array_of("Float64", "1 2 x 4"), "", "", "holds \"x\", which is no finite number of the type Float64");
+    expect(array_of("Float64", "1 2 x 4"), "", "", "holds \"x\", which is not a finite number of the type Float64");
     expect(array_of("Float64", "1 2 nan 4"), "", "", "holds \"nan\"");
-    expect("", array_of("Int32", "1.5"), "", "holds \"1.5\", which is no finite number of the type Int32");
+    expect("", array_of("Int32", "1.5"), "", "holds \"1.5\", which is not a finite number of the type Int32");
     expect("", array_of("Int32", "99999999999"), "", "holds \"99999999999\"");
     expect("", array_of("Foo", "1"), "", "the type \"Foo\", which is none of VTK's");
     expect("", "", array_of("Foo", "1"), "the type \"Foo\", which is none of VTK's");
     expect("", "", array_of("String", "65 0 66", two_texts), "");  // nor is this one, but as bytes
     expect("", "", array_of("String", "65 0 66 0 67 0", two_texts), "");
-    expect("", "", array_of("String", "65 300", two_texts), "holds \"300\", which is no finite number of the type String");
+    expect("", "", array_of("String", "65 300", two_texts), "holds \"300\", which is not a finite number of the type String");
 }
 
 TEST(DamagedVtu, FlippedBytesOfPlainTextNeverDoHarm) {
