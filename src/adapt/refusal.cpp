@@ -14,6 +14,7 @@ std::string cell_words(const Trouble& trouble) {
 }
 
 std::string in_gap(const Domain& domain, const Approach& near, const Trouble& trouble) {
+    if (near.gap == 0) return in_words(domain, near) + ": no room is left for the mesh";
     const double size = domain.size.surface,
                  would_do = size_for_gap(domain, near, doubtful_gap(trouble.floor));
     return in_words(domain, near) + ", " + written(near.gap / size) + " of size.surface = " + metres(size) +
@@ -71,8 +72,9 @@ Refusal explained(const Domain& domain, const Trouble& trouble, double advised_d
     std::string what = "the mesh is not good enough";
     if (refusal.near) {
         const Approach& near = *refusal.near;
-        const bool is_gap =
-            near.gap > 0 && width_at(at, near, trouble.place) < narrow_in_sizes * target_size(at, trouble.place);
+        const bool is_gap = (near.gap > 0 || !domain.bodies[near.body].shape.cut) &&  // what is cut meets the wall anyway
+                            width_at(at, near, trouble.place) < narrow_in_sizes * target_size(at, trouble.place);
+        refusal.in_gap = is_gap;
         what = is_gap ? in_gap(domain, near, trouble) : in_neck(at, domain.bodies[near.body], near.body, trouble);
         if (what.empty()) what = in_motion(domain, near.body, trouble);
     }

@@ -15,6 +15,7 @@ struct Refusal {
     std::optional<Vec3> place = {};    // [m] where it is; none: all over
     double time = 0;                   // [s] at which the step was to end
     std::optional<Approach> near = {};  // what leaves the least room there; nothing without bodies
+    bool in_gap = false;                // that is why
 };
 
 /// A step that fails at one place.

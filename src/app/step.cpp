@@ -108,9 +108,10 @@ public:
             try {
                 return kropla::advance(state_.moving, fields_, options.dt,
                                        [&](const StepToSolve& step) { return solve(step); }, how);
-            } catch (const StuckError&) {
-                if (unsolved_.empty()) throw;
-                throw SolverError(unsolved_);
+            } catch (const StuckError& stuck) {
+                if (!unsolved_.empty()) throw SolverError(unsolved_);
+                if (!stuck.in_gap || free_.empty() || given_.contact) throw;
+                throw StuckError(std::string(stuck.what()) + "; with a table [contact] bodies may touch", stuck.place);
             }
         }();
         if (given_.heat) finish_heat(done);

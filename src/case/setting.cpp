@@ -119,6 +119,8 @@ toml::path path_of(const std::string& key, const toml::table& file, const std::s
     const auto is_nameless = [](const toml::path_component& part) { return !is_index(part) && name_of(part).empty(); };
     if (path.empty() || is_index(path[0]) || std::ranges::any_of(path, is_nameless))
         refuse(setting, "has no key; keys are such as size.surface and body[0].radius");
+    if (path.str() != key)
+        refuse(setting, fmt::format("is no key; {} might be meant, as keys are such as size.surface and body[0].radius", path.str()));
     const toml::table* given = file["parameters"].as_table();
     std::vector<std::string> known = given != nullptr ? names_of(*given) : std::vector<std::string>();
     const auto is_parameter = [&](const toml::path_component& part) {

@@ -172,10 +172,13 @@ Advanced try_to_advance(MovingMesh& moving, Fields& fields, const Fields::Copy& 
         done.refused = refusal.why;
         if (refusal.limiting.exists() && !std::exchange(remeshed, true)) continue;
         const double next = shorter(dt, refusal.advised_dt);
-        if (next < least_dt)
-            throw StuckError("the mesh cannot go on from t = " + time_words(moving.time()) + ", even by " +
-                                 time_words(dt) + ": " + refusal.why,
+        if (next < least_dt) {
+            StuckError stuck("the mesh cannot go on from t = " + time_words(moving.time()) + ", even by " + time_words(dt) +
+                                 ": " + refusal.why,
                              refusal.place);
+            stuck.in_gap = refusal.in_gap;
+            throw stuck;
+        }
         dt = next;
     }
     done.time = moving.time();

@@ -15,6 +15,7 @@ struct StuckError : FloorError {
         : FloorError(what), place(at), mesh(std::move(reached)) {}
     std::optional<Vec3> place;
     std::optional<Mesh> mesh;
+    bool in_gap = false;  // bodies, or a body and a wall, leave too little room there
 };
 
 }  // namespace kropla

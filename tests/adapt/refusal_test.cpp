@@ -44,6 +44,14 @@ TEST(Refusal, OfANarrowGapSaysWhatIsNearWhatAndTheSizeThatWouldDo) {
     EXPECT_EQ(said.advised_dt, 0.05);
     EXPECT_EQ(said.place, (Vec3{0.01, 0, -1.99}));
     EXPECT_EQ(said.limiting, Tet(7));
+    EXPECT_TRUE(said.in_gap);
+}
+
+TEST(Refusal, WithoutAGapSaysWhatTouchesWhat) {
+    const Domain domain = landing_sphere();
+    const Refusal said = explained(domain, {"would be turned over", Tet(7), {0.01, 0, -1.99}, 1.1, 1.2, 10}, 0);
+    expect_words(said.why, {"at t = 1.2 s body \"sphere\" touches the wall z min: no room is left for the mesh (cell 7"});
+    EXPECT_TRUE(said.in_gap);
 }
 
 TEST(Refusal, ThatAdvisesASizeTakesNoGapForNarrowWithIt) {

@@ -82,6 +82,8 @@ TEST(Settings, AreRefusedInOneLine) {
     EXPECT_EQ(refusal({"=3"}), "--set =3: must be KEY=VALUE, such as size.surface=1e-4");
     EXPECT_EQ(refusal({"speed=1", "speed=2"}), "--set speed=2: speed is set twice");
     EXPECT_EQ(refusal({"a..b=1"}), "--set a..b=1: has no key; keys are such as size.surface and body[0].radius");
+    EXPECT_EQ(refusal({"body[0.radius=1"}),
+              "--set body[0.radius=1: is no key; body[0].radius might be meant, as keys are such as size.surface and body[0].radius");
     for (const char* odd : {"quality.method=\xff", "random.\xff=1", "speed=\xff", "parameters={}", "body=[]", "body[0]=3", "speed=\"",
                             "body[9999999999999999999999].radius=1", "body[-1].radius=1", "a]=1", "domain.max[3]=1"})
         EXPECT_NE(refusal({odd}), "") << odd;
