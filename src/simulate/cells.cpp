@@ -54,15 +54,18 @@ Cells living_cells(const Mesh& mesh, Region only) {
 Pieces pieces_of(const Mesh& mesh, const Cells& cells) {
     Array<Vertex, Vertex> towards(mesh.position.size());  // of each vertex one of its piece with a lower number, or itself
     const auto first_of = [&](Vertex v) {
+        if (!towards[v].exists()) towards[v] = v;
         while (towards[v] != v) v = towards[v] = towards[towards[v]];
         return v;
     };
     for_each_cell(cells, [&](const auto& cell) {
         const auto vertices = cell_vertices(mesh, cell);
+        Vertex first = first_of(vertices[0]);
         for (Vertex v : vertices) {
-            if (!towards[v].exists()) towards[v] = v;
-            const Vertex a = first_of(vertices[0]), b = first_of(v);
-            towards[std::max(a, b)] = std::min(a, b);
+            const Vertex other = first_of(v);
+            if (other == first) continue;
+            towards[std::max(first, other)] = std::min(first, other);
+            first = std::min(first, other);
         }
     });
     Pieces pieces{Array<Vertex, int>(mesh.position.size(), -1)};
