@@ -27,9 +27,10 @@ double clearance_on_face(const Snapshot& at, Patch patch, const Vec3& x) {
     widened.max[axis] += at.size.far + width;
     const double size = target_size(at, x);
     double beyond = distance_to_walls(widened, x) - clearance_at_walls * size;
-    for (const Shape& shape : at.shapes)
-        if (reaches(reached_faces(shape), patch.value))
-            beyond = std::min(beyond, std::abs(signed_distance(shape, x)) - clearance_at_bodies * size);
+    for (std::size_t body = 0; body < at.shapes.size(); ++body)
+        if (reaches(reached_faces(at.shapes[body]), patch.value))
+            beyond = std::min(beyond, std::abs(signed_distance(at.shapes[body], x)) -
+                                          clearance_across * surface_size(at, body, x));
     return beyond;
 }
 

@@ -12,6 +12,9 @@ namespace kropla {
 // tets after relaxation, by measurement.
 inline constexpr double clearance_at_walls = 0.55;
 inline constexpr double clearance_at_bodies = 0.70;
+// Of points in a face from a body that reaches through it, per size at its surface: where it is a sheet along the face, one
+// cell thick, they are to be as near as the sheet is thick, 0.67.
+inline constexpr double clearance_across = 0.65;
 
 /// The target size at `x` and what `clearance` is there, at the cost of one [m].
 struct SizeAndClearance {

@@ -7,6 +7,7 @@
 #include <kropla/mesh/topology.h>
 #include <kropla/mesh/verify.h>
 #include "mesh/crossing.h"
+#include <kropla/step/initial_mesh.h>
 
 #include <gtest/gtest.h>
 
@@ -78,6 +79,18 @@ TEST(CutMesh, SurfaceCutByAFaceAnEdgeAndACorner) {
     expect_mesh(domain_with({ball_at({0, 0, 0}, 1, 4)}, 0.25), {2.09}, 0.027);
     expect_mesh(domain_with({ball_at({2, 0, 0}, 1, 4)}, 0.25), {1.045}, 0.027);
     expect_mesh(domain_with({ball_at({2, 2, 0}, 1, 4)}, 0.25), {0.5225}, 0.027);
+}
+
+// One cell thick: points of the face stand right under those of the surface.
+TEST(CutMesh, FilmsOnTheFloor) {
+    for (const double thickness : {0.3, 0.2, 0.12})
+        for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+            SCOPED_TRACE(std::to_string(thickness) + " m thick, seed " + std::to_string(seed));
+            const Domain domain = domain_with({slab(box, {-9, -9, -9}, {0.9, 0.4, thickness})}, 0.5);
+            const Mesh mesh = initial_mesh(domain, seed);
+            EXPECT_NEAR(region_volume(mesh, Region(1)) / (2.9 * 2.4 * thickness), 1, 1e-12);
+            EXPECT_LT(summarise_quality(mesh).max_aspect_ratio, 5.85);
+        }
 }
 
 TEST(CutMesh, DropletBetweenPoolAndWire) {
