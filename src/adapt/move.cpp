@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace kropla {
@@ -282,15 +283,13 @@ void place_columns(const Mesh& mesh, const Snapshot& at_end, ZoneMotion& motion)
     }
 }
 
-/// A tet of the region at the body.
-std::optional<Tet> tet_beside(const Mesh& mesh, std::span<const Vertex> body, Region region) {
+/// Adds the tets of the region at the body: of all its pieces, as around a hollow body and within it.
+void add_tets_beside(const Mesh& mesh, std::span<const Vertex> body, Region region, std::vector<Tet>& tets) {
     std::vector<Tet> around;
     for (Vertex v : body) {
         ball(mesh, v, around);
-        const auto found = std::ranges::find_if(around, [&](Tet t) { return mesh.region[t] == region; });
-        if (found != around.end()) return *found;
+        std::ranges::copy_if(around, std::back_inserter(tets), [&](Tet t) { return mesh.region[t] == region; });
     }
-    return std::nullopt;
 }
 
 /// Is `x` so far from all bodies that none of them can move it? Told from the balls that hold them.
@@ -319,7 +318,7 @@ void reach_out(const Mesh& mesh, std::span<const Travel> travels, const MovedBod
     std::vector<Tet> cells;
     const auto begin_with = [&](const std::vector<Vertex>& body, Region region) {
         if (std::ranges::any_of(body, [&](Vertex v) { return has_cell_at(zone, mesh, v, region); })) return;
-        if (const auto t = tet_beside(mesh, body, region)) cells.push_back(*t);
+        add_tets_beside(mesh, body, region, cells);
     };
     zone.deforming.clear();
     for (const BodySurface& surface : bodies.deforming) zone.deforming.push_back(region_of_body(surface.body));

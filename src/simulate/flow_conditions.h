@@ -48,8 +48,8 @@ struct FlowConditions {
                                              const Pattern& pattern, const FlowBoundary& boundary,
                                              const Array<Vertex, Vec3>& velocity, double t, double dt);
 
-/// The pressure given at open faces, at vertices that stand there at time t. Throws CaseError if it is not
-/// finite.
+/// The pressure given at open faces, at vertices that stand there at time t; where it is zero everywhere, maybe nothing.
+/// Throws CaseError if it is not finite.
 [[nodiscard]] std::array<Array<Vertex, double>, 6> open_pressures(const Array<Vertex, Vec3>& position,
                                                                   const FlowOptions& options,
                                                                   const FlowBoundary& boundary, double t);

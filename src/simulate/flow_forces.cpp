@@ -46,15 +46,36 @@ Array<Vertex, Vec3> reactions(const Ranks& ranks, const Pattern& pattern, const 
     return reaction;
 }
 
-void take_off_pressure(const Pattern& pattern, const FlowBoundary& boundary, const Array<Vertex, Vec3>& position,
-                       const std::vector<double>& pressure, Array<Vertex, Vec3>& reaction) {
+void take_off_pressure(const Pattern& pattern, const FlowBoundary& boundary, const FlowConditions& conditions,
+                       const Array<Vertex, Vec3>& position, const std::vector<double>& pressure,
+                       Array<Vertex, Vec3>& reaction) {
     const auto take_off = [&](const std::vector<std::array<Vertex, 3>>& facets) {
         for (const auto& [a, b, c] : facets)
             for (Vertex v : {a, b, c})
                 reaction[v] += pressure[pattern.piece_of(a)] / 6 * cross(position[b] - position[a], position[c] - position[a]);
     };
-    for (const auto& face : boundary.faces) take_off(face);
+    for (std::size_t face = 0; face < 6; ++face)
+        if (!conditions.open[face]) take_off(boundary.faces[face]);
     for (const SolidSurface& solid : boundary.solids) take_off(solid.facets);
+}
+
+std::vector<FaceShare> shares_of_faces(const FlowBoundary& boundary, const FlowConditions& conditions,
+                                       const Array<Vertex, Vec3>& position, const Array<Vertex, double>& pressure) {
+    Array<Vertex, char> held(position.size(), 0);
+    for (const SolidSurface& solid : boundary.solids)
+        for (Vertex v : solid.vertices) held[v] = 1;
+    std::vector<FaceShare> shares;
+    for (std::size_t face = 0; face < 6; ++face) {
+        if (conditions.open[face]) continue;  // what acts there is no reaction
+        for (const auto& facet : boundary.faces[face]) {
+            const auto& [a, b, c] = facet;
+            const Vec3 area = 0.5 * cross(position[b] - position[a], position[c] - position[a]);
+            const double sum = pressure[a] + pressure[b] + pressure[c];
+            for (Vertex v : facet)
+                if (held[v] != 0) shares.push_back({face, v, -(pressure[v] + sum) / 12 * area});
+        }
+    }
+    return shares;
 }
 
 std::vector<BodyForce> body_forces(const FlowBoundary& boundary, const Array<Vertex, Vec3>& position,
@@ -73,9 +94,10 @@ std::vector<BodyForce> body_forces(const FlowBoundary& boundary, const Array<Ver
 }
 
 std::array<Vec3, 6> face_forces(const FlowOptions& options, const FlowBoundary& boundary,
-                                const Array<Vertex, Vec3>& reaction) {
+                                const std::vector<FaceShare>& shares, const Array<Vertex, Vec3>& reaction) {
     const Array<Vertex, unsigned> faces = faces_at(boundary, reaction.size());
     std::array<Vec3, 6> forces = {};
+    for (const FaceShare& share : shares) forces[share.face] -= share.reaction;
     for (int m = 0; m < 3; ++m) {
         const unsigned across = 3u << (2 * m), hold = holding(options, across);
         for (Vertex v : reaction.indices()) {

@@ -58,6 +58,7 @@ public:
           material_(flow_materials(current, options, temperature)), guess_(start),
           solver_(ranks, blocks_, fixed_unknowns()) {
         system_.value = solver_.values();
+        find_level();
         find_pressures();
         find_expanding();
         if (!steady()) mesh_velocity_ = mesh_velocities(before, current, dt);
@@ -95,7 +96,9 @@ public:
         report.passes = passes_;
         report.error = error_;
         Array<Vertex, Vec3> reaction = reactions(ranks_, blocks_.pattern, reaction_);
-        take_off_pressure(blocks_.pattern, boundary_, current_.position, mean_pressures(), reaction);
+        take_off_pressure(blocks_.pattern, boundary_, conditions_, current_.position, surplus_pressures(), reaction);
+        const auto shares = shares_of_faces(boundary_, conditions_, current_.position, state().pressure);
+        for (const FaceShare& share : shares) reaction[share.vertex] -= share.reaction;
         report.bodies = body_forces(boundary_, current_.position, guess_.velocity, reaction);
         for (const BodyForce& body : report.bodies) report.net_flux += body.flux;
         for (std::size_t face = 0; face < 6; ++face) {
@@ -108,7 +111,7 @@ public:
         report.dissipated = dissipated_;
         report_momentum(report);
         report_mass(report);
-        report.face_force = face_forces(options_, boundary_, reaction);
+        report.face_force = face_forces(options_, boundary_, shares, reaction);
         report.largest_courant = largest_courant();
         return report;
     }
@@ -116,12 +119,12 @@ public:
     /// The state at the step's end: zero where nothing flows.
     [[nodiscard]] FlowState state() const {
         FlowState end = still_flow(current_);
-        const std::vector<double> mean = mean_pressures();
+        const std::vector<double> surplus = surplus_pressures();
         for (Vertex v : numbering().vertex) {
             end.velocity[v] = guess_.velocity[v];
-            end.pressure[v] = guess_.pressure[v] - mean[blocks_.pattern.piece_of(v)];
+            end.pressure[v] = guess_.pressure[v] - surplus[blocks_.pattern.piece_of(v)];
         }
-        set_within(end, mean);
+        set_within(end, surplus);
         if (gas_) end.density = gas_->densities();
         return end;
     }
@@ -151,6 +154,37 @@ private:
         return further ? guess_.within[as_size(upper()[v].value - 1)][v] : guess_.pressure[v];
     }
 
+    /// Only what the pressure is beside a level counts, so it is solved for without that, as 1 Pa would be lost in 1 bar.
+    void find_level() {
+        const auto given = open_pressures(current_.position, options_, boundary_, t_ + dt_);
+        double sum = 0, guessed = 0, count = 0;
+        for (std::size_t face = 0; face < 6; ++face)
+            for (const auto& facet : boundary_.faces[face])
+                for (Vertex v : facet) {
+                    if (!conditions_.open[face]) continue;
+                    sum += given[face].empty() ? 0 : given[face][v];
+                    guessed += guess_.pressure[v];
+                    ++count;
+                }
+        if (sum == 0) return;
+        level_ = sum / count;
+        for (Vertex v : current_.position.indices()) {
+            if (numbering().row[v] < 0 || conditions_.closed[blocks_.pattern.piece_of(v)] != 0) continue;
+            guess_.pressure[v] -= guessed / count;
+            for (Array<Vertex, double>& within : guess_.within) within[v] -= guessed / count;
+        }
+    }
+    /// Less the level.
+    [[nodiscard]] std::array<Array<Vertex, double>, 6> pressures_at_faces(const Array<Vertex, Vec3>& position, double time) const {
+        auto pressures = open_pressures(position, options_, boundary_, time);
+        for (std::size_t face = 0; face < 6 && level_ != 0; ++face) {
+            if (!conditions_.open[face]) continue;
+            pressures[face].resize(position.size(), 0.0);
+            for (double& pressure : pressures[face]) pressure -= level_;
+        }
+        return pressures;
+    }
+
     /// Of the state at the begin: the pressure at inner vertices of the higher regions is the one within.
     void find_pressures() {
         if (upper().empty()) return;
@@ -162,25 +196,26 @@ private:
                 if (!upper()[v].exists()) guess_.pressure[v] = guess_.within[as_size(region.value - 1)][v];
         });
     }
-    /// Of each piece that is closed; zero in the others.
-    [[nodiscard]] std::vector<double> mean_pressures() const {
+    /// What is to be taken off the pressures of each piece: of one that is closed the mean; of the others less than nothing,
+    /// the level.
+    [[nodiscard]] std::vector<double> surplus_pressures() const {
         std::vector<double> sum(conditions_.closed.size(), 0.0), volume(sum);
         for_each_share(current_, cells_, [&](const auto& cell, Vertex v, double share) {
             const std::size_t piece = blocks_.pattern.piece_of(v);
             sum[piece] += share * pressure_at(v, cell_region(current_, cell));
             volume[piece] += share;
         });
-        for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = conditions_.closed[p] != 0 ? sum[p] / volume[p] : 0;
+        for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = conditions_.closed[p] != 0 ? sum[p] / volume[p] : -level_;
         return sum;
     }
-    /// At the end, less the mean of the piece.
-    void set_within(FlowState& end, const std::vector<double>& mean) const {
+    /// At the end, less the surplus of the piece.
+    void set_within(FlowState& end, const std::vector<double>& surplus) const {
         if (upper().empty()) return;
         end.within.assign(options_.regions.size() - 1, Array<Vertex, double>(current_.position.size(), 0.0));
         for_each_cell(cells_, [&](const auto& cell) {
             const Region region = cell_region(current_, cell);
             for (Vertex v : cell_vertices(current_, cell))
-                if (region.value > 0) end.within[as_size(region.value - 1)][v] = pressure_at(v, region) - mean[blocks_.pattern.piece_of(v)];
+                if (region.value > 0) end.within[as_size(region.value - 1)][v] = pressure_at(v, region) - surplus[blocks_.pattern.piece_of(v)];
         });
     }
 
@@ -232,7 +267,7 @@ private:
         const double time = t_ + at.share * dt_;
         if (gas_) gas_->begin(at, position, guess_.velocity, mesh_velocity_);
         set_forces(current_, position, options_, time, material_);
-        const auto open_pressure = open_pressures(position, options_, boundary_, time);
+        const auto open_pressure = pressures_at_faces(position, time);
         const FlowStage stage{current_,         position,  mesh_velocity_,     old,
                               guess_,           material_, conditions_.open,   open_pressure,
                               options_.gravity, per_time,  options_.convection, upper()};
@@ -380,6 +415,7 @@ private:
     Array<Region, FlowMaterial> material_;
     std::optional<ExpandingGas> gas_;  // if the density depends on the temperature
     FlowState guess_;
+    double level_ = 0;  // [Pa] of the pressure at open faces, beside which that of `guess_` is in pieces that reach them
     BlockSystem system_;
     std::vector<double> reaction_;  // the residual of the last assembly, as it is
     std::vector<double> share_of_volume_;  // per row

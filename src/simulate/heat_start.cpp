@@ -7,15 +7,24 @@
 #include "simulate/step_mean.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace kropla {
 namespace {
 
-/// The region that begins at each vertex: at an interface the last, a body's. None in free slots.
-Array<Vertex, Region> regions_at(const Mesh& mesh) {
+bool is_steady(const HeatRegion& region) { return region.initial.steady && !region.held; }
+
+/// The region that begins at each vertex: at an interface the last, a body's, of those that say how warm they are. None in
+/// free slots.
+Array<Vertex, Region> regions_at(const Mesh& mesh, const HeatOptions& options) {
     Array<Vertex, Region> region(mesh.position.size());
+    const auto rank = [&](Region r) {
+        return std::pair(r.exists() && !is_steady(options.regions[as_size(r.value)]), r);
+    };
     for_each_cell(living_cells(mesh), [&](const auto& cell) {
-        for (Vertex v : cell_vertices(mesh, cell)) region[v] = std::max(region[v], cell_region(mesh, cell));
+        const Region here = cell_region(mesh, cell);
+        for (Vertex v : cell_vertices(mesh, cell))
+            if (rank(region[v]) < rank(here)) region[v] = here;
     });
     return region;
 }
@@ -51,7 +60,7 @@ HeatOptions at_start(HeatOptions options) {
 NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options) {
     check_heat(options, mesh);
     NodalField field{"temperature", "K", Array<Vertex, double>(mesh.position.size(), 0.0)};
-    const Array<Vertex, Region> region = regions_at(mesh);
+    const Array<Vertex, Region> region = regions_at(mesh, options);
     for (Vertex v : mesh.position.indices()) {
         if (!region[v].exists()) continue;
         const auto r = static_cast<std::size_t>(region[v].value);
@@ -75,8 +84,7 @@ bool has_steady_state(const HeatOptions& options) {
 
 NodalField initial_temperature(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options) {
     NodalField field = initial_temperature(mesh, options);
-    const auto steady = [](const HeatRegion& region) { return region.initial.steady && !region.held; };
-    if (std::ranges::none_of(options.regions, steady)) return field;
+    if (std::ranges::none_of(options.regions, is_steady)) return field;
     if (!has_steady_state(options))
         throw CaseError("heat: there is no steady state, or more than one: no face, surface or region says how warm it is");
     settle_start(ranks, mesh, at_start(options), field);

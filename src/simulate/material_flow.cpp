@@ -8,7 +8,6 @@
 #include "simulate/solver.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace kropla {
 namespace {
@@ -244,7 +243,6 @@ MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& c
                               .tolerance = 2e-13,
                               .potential = true};
     if (!solved.density.empty()) {
-        assert(flowing.size() == 1);
         flow.by_mass = flowing.front();
         flow.density_before = solved.density_before;
         flow.density = solved.density;

@@ -53,7 +53,7 @@ struct MaterialFlow {
 /// of a piece together are the growth of its volume: zero if bodies keep theirs. If not, gas has no way to go;
 /// then the divergence of u is that growth, spread evenly over the piece.
 ///
-/// With a density, which only one region may have, it is mass that is conserved, not volume: there A_ij is of rho grad
+/// With a density, which the first of `flowing` then has, it is mass that is conserved in it, not volume: there A_ij is of rho grad
 /// phi_i . grad phi_j, and the right side what makes, at each vertex,
 ///     m1_i - m0_i = dt (integral of rho (u - w) . grad phi_i - what passes faces),   m_i = integral of rho phi_i,
 /// rho in the flux the mean of a cell's vertices at the end. So a state that is constant per mass stays constant.

@@ -1,11 +1,14 @@
 #include "adapt/zone.h"
 #include "adapt/cases.h"
+#include "adapt/stepping.h"
 #include "adapt/way.h"
 #include "base/random.h"
+#include "domain/surfaces.h"
 #include "mesh/meshes.h"
 #include "mesh/properties.h"
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <gtest/gtest.h>
 
@@ -223,6 +226,21 @@ TEST(MoveBoundary, ABodyThatComesBackIsTheSameBitForBit) {
             seen = std::move(here);
         }
     }
+}
+
+// What is in a hollow body goes with it, and is looked after as what is around.
+TEST(Move, OfAHollowBodyTakesAlongWhatIsInIt) {
+    const Triangles hollow = together(box_of_triangles({-0.6, -0.6, -0.6}, {0.6, 0.6, 0.6}),
+                                      turned_round(box_of_triangles({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3})));
+    Domain domain{{{-1.5, -1.5, -1.5}, {1.5, 1.5, 2}}, {{"hollow", shape_within(hollow.points, hollow.triangles)}}, {0.3, 0.3, 0.8}};
+    domain.bodies[0].motion = [](double t) { return Pose{{0, 0, t}, rotation_about({0, 0, 1}, t)}; };
+    MovingMesh moving(domain, initial_mesh(domain, 1), 0);
+    for (int step = 1; step <= 4; ++step) {
+        (void)step_to(moving, 0.125 * step);
+        EXPECT_LE(summarise_quality(moving.reference()).max_aspect_ratio, 6.6);
+    }
+    EXPECT_EQ(verify(moving.reference()), "");
+    EXPECT_NEAR(region_volume(moving.reference(), Region(1)), 1.512, 1e-12);
 }
 
 }  // namespace

@@ -192,5 +192,49 @@ TEST(FlowExact, WhatIsGivenComesInAsAWhole) {
     }
 }
 
+// One bar more at the open faces is one bar more everywhere, and nothing else.
+TEST(FlowExact, TheLevelOfThePressureIsOfNoMatter) {
+    const Mesh mesh = unit_cube_with_body(8);
+    FlowOptions options = fluid(1, 1e-3, {});
+    options.regions.emplace_back();
+    options.faces.fill({});
+    options.gravity = {0, 0, -9.81};
+    options.faces[4] = {.kind = FlowFace::Kind::velocity, .velocity = uniform({0, 0, 1e-3})};
+    std::array<FlowState, 2> states = {still_flow(mesh), still_flow(mesh)};
+    std::array<FlowReport, 2> reports;
+    for (std::size_t i = 0; i < 2; ++i) {
+        options.faces[5] = {.kind = FlowFace::Kind::open,
+                            .pressure = [i](const Vec3& x, double) { return 1e5 * static_cast<double>(i) + x.x; }};
+        for (int step = 0; step < 2; ++step)
+            reports[i] = step_flow(petsc().all_ranks(), mesh, mesh, options, states[i], 0.1 * step, 0.1);
+    }
+    EXPECT_LT(norm(reports[1].bodies[0].force - reports[0].bodies[0].force), 1e-8);
+    EXPECT_LT(norm(reports[1].face_force[0] - reports[0].face_force[0] - Vec3{-1e5, 0, 0}), 1e-7);
+    for (Vertex v : mesh.position.indices()) {
+        EXPECT_LT(norm(states[1].velocity[v] - states[0].velocity[v]), 1e-9);
+        const bool flows = norm(mesh.position[v] - Vec3{0.5, 0.5, 0.5}) > 0.45;
+        EXPECT_NEAR(states[1].pressure[v] - states[0].pressure[v], flows ? 1e5 : states[1].pressure[v] - states[0].pressure[v], 1e-6);
+    }
+}
+
+// A post on the floor under water at rest: what the water does to the floor beside it is not the post's.
+TEST(FlowExact, APostBearsWhatIsAboveIt) {
+    const Mesh mesh = cube_grid(8, 8, 8, [](int i, int j, int k) { return Vec3{i / 8.0, j / 8.0, k / 8.0}; },
+                                [](int i, int j, int k) { return i >= 2 && i < 5 && j >= 2 && j < 6 && k < 4 ? 1 : 0; });
+    FlowOptions options = fluid(2, 1, {});
+    options.regions.emplace_back();
+    options.faces.fill({});
+    options.faces[5] = {.kind = FlowFace::Kind::open, .pressure = [](const Vec3&, double) { return 7.0; }};
+    options.gravity = {0, 0, -10};
+    options.tolerance = 1e-10;
+    FlowState state = still_flow(mesh);
+    const FlowReport report = step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 0.1);
+    constexpr double area = 3 * 4 / 64.0;
+    EXPECT_LT(norm(report.bodies[0].force - Vec3{0, 0, -17 * area}), 1e-9);
+    EXPECT_LT(norm(report.bodies[0].torque - cross({0, 0, 0.25}, report.bodies[0].force)), 1e-9);
+    EXPECT_LT(norm(report.face_force[4] - Vec3{0, 0, -27 * (1 - area)}), 1e-9);
+    EXPECT_LT(norm(report.face_force[0] - Vec3{-17, 0, 0}), 1e-9);
+}
+
 }  // namespace
 }  // namespace kropla

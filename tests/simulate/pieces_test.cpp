@@ -179,5 +179,32 @@ TEST(Pieces, ASteadyStateIsToBeKnownInEach) {
     EXPECT_LT(largest_difference(mesh, initial_temperature(petsc().all_ranks(), mesh, options), 400), 1e-6);
 }
 
+// A body that begins with a steady state in what is kept at a number: its surface is as warm as that.
+TEST(Pieces, ASteadyBodyHasTheTemperatureAroundIt) {
+    const Mesh mesh = unit_cube_with_body(8);
+    HeatOptions options{.regions = std::vector<HeatRegion>(2)};
+    for (HeatRegion& region : options.regions) region.material = {.conductivity = 1, .density = 1, .specific_heat = 1};
+    options.regions[0].initial = 300;
+    options.regions[1].initial.steady = true;
+    EXPECT_LT(largest_difference(mesh, initial_temperature(petsc().all_ranks(), mesh, options), 300), 1.7e-7);
+}
+
+// A gas that expands over a plate at rest, through which nothing flows.
+TEST(Pieces, WhatExpandsMayBeBesideWhatRests) {
+    const Mesh mesh = unit_cube_with_body(4);
+    const Property density({300, 600}, {1.0, 0.5});
+    FlowOptions options{.regions = {FlowRegion{.density = density, .viscosity = 0.1}, std::nullopt}};
+    options.faces[5].kind = FlowFace::Kind::open;
+    FlowState state = still_flow(mesh);
+    const Array<Vertex, double> temperature(mesh.position.size(), 400.0), begin(mesh.position.size(), 1.0);
+    state.density = begin;
+    const FlowReport report = step_flow(petsc().all_ranks(), mesh, mesh, options, state, 0, 0.1, temperature);
+    const MaterialFlow flow = material_flow(petsc().all_ranks(), mesh, mesh, {gas, shell}, 0.1,
+                                            {state.velocity, begin, state.density, report.through});
+    EXPECT_EQ(flow.by_mass, gas);
+    EXPECT_TRUE(flow.potential[shell].empty());
+    EXPECT_FALSE(flow.potential[gas].empty());
+}
+
 }  // namespace
 }  // namespace kropla
