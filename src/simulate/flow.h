@@ -176,8 +176,8 @@ void check_flow(const FlowOptions& options, const Mesh& mesh);
 /// Takes the flow from t [s] on `before` to t + dt on `current`: the same connectivity. `temperature` [K] at
 /// the end of the step may be empty where no property depends on it. Without an open face the mean of the
 /// pressure is zero. Boundary of patches from 6 on that is no layer's is
-/// a wall. Where faces meet, a wall holds, unless what is given passes a face there and goes along the wall, so that
-/// all that is given comes in; then the first one with a velocity, then slip. All ranks
+/// a wall. Where faces meet, a wall holds, unless what is given passes a face there: then what of it goes along the
+/// wall, so that all that is given comes in; then the first one with a velocity, then slip. All ranks
 /// call it together with the same arguments, and all get the whole state. The solver's options have the
 /// prefix flow_: -flow_ksp_type, -flow_pc_type. Throws CaseError as check_flow, or if dt is not positive, a
 /// quantity not finite or what flows in has no way out; SolverError if the solver or Newton's method does not

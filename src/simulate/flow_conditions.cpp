@@ -98,19 +98,25 @@ void let_slip(std::size_t face, const std::vector<Vertex>& vertices, FlowConditi
     for (Vertex v : vertices) conditions.fixed[v][face / 2] = true;
 }
 
-/// Of the box and others, that hold what flows.
-std::vector<std::array<Vertex, 3>> walls_of(const FlowOptions& options, const FlowBoundary& boundary) {
-    std::vector<std::array<Vertex, 3>> walls = boundary.fixed_walls;
+/// Of the faces of a kind, and of other walls if it is that.
+std::vector<std::array<Vertex, 3>> facets_of(FlowFace::Kind kind, const FlowOptions& options, const FlowBoundary& boundary) {
+    std::vector<std::array<Vertex, 3>> facets;
+    if (kind == FlowFace::Kind::wall) facets = boundary.fixed_walls;
     for (std::size_t face = 0; face < 6; ++face)
-        if (options.faces[face].kind == FlowFace::Kind::wall)
-            walls.insert(walls.end(), boundary.faces[face].begin(), boundary.faces[face].end());
-    return walls;
+        if (options.faces[face].kind == kind)
+            facets.insert(facets.end(), boundary.faces[face].begin(), boundary.faces[face].end());
+    return facets;
 }
 
-/// Does a velocity go through a facet, and not along it?
-bool passes(const std::array<Vertex, 3>& facet, const Array<Vertex, Vec3>& position, const Vec3& velocity) {
-    const Vec3 area = cross(position[facet[1]] - position[facet[0]], position[facet[2]] - position[facet[0]]);
-    return std::abs(dot(area, velocity)) > along * norm(area) * norm(velocity);
+/// Of what is given at the marked vertices of the facet, only what goes along it is left.
+void keep_along(const std::array<Vertex, 3>& facet, const Array<Vertex, Vec3>& position, const Array<Vertex, char>& marked,
+                FlowConditions& conditions) {
+    const Vec3 normal = normalised(cross(position[facet[1]] - position[facet[0]], position[facet[2]] - position[facet[0]]));
+    for (Vertex v : facet) {
+        if (marked[v] == 0) continue;
+        for (Vec3* given : {&conditions.end[v], &conditions.rate[v]})
+            if (const double through = dot(*given, normal); std::abs(through) > along * norm(*given)) *given -= through * normal;
+    }
 }
 
 void fix_solid(const Step& step, const SolidSurface& solid, FlowConditions& conditions) {
@@ -267,10 +273,9 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
             fix_face(step, face, vertices[face], conditions);
             for (Vertex v : vertices[face]) passing[v] = conditions.end[v][static_cast<int>(face / 2)] != 0 ? 1 : 0;
         }
-    const std::vector<std::array<Vertex, 3>> walls = walls_of(options, boundary);
-    for (const auto& facet : walls)
-        for (Vertex v : facet)
-            if (passing[v] != 0 && passes(facet, current.position, conditions.end[v])) passing[v] = 0;
+    for (const FlowFace::Kind kind : {FlowFace::Kind::wall, FlowFace::Kind::slip})
+        for (const auto& facet : facets_of(kind, options, boundary)) keep_along(facet, current.position, passing, conditions);
+    const std::vector<std::array<Vertex, 3>> walls = facets_of(FlowFace::Kind::wall, options, boundary);
     const auto at_rest = [](const Vec3&, double) { return Vec3{}; };
     for (Vertex v : vertices_of(walls))
         if (passing[v] == 0) fix(step, v, at_rest, "", conditions);
