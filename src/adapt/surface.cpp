@@ -244,8 +244,8 @@ Held held_by_edges(const Mesh& mesh, const SurfaceStar& star, std::span<const Ve
     if (sharp_ends.empty()) return Held::not_at_all;
     if (sharp_ends.size() == 1) return star.free.all() ? Held::in_corner : Held::to_edge;
     const Vec3 &x = mesh.position[star.vertex], one = mesh.position[sharp_ends[0]] - x, other = mesh.position[sharp_ends[1]] - x;
-    const bool straight = star.free.all() && sharp_ends.size() == 2 && -dot(one, other) > least_agreement * norm(one) * norm(other);
-    return straight ? Held::to_edge : Held::in_corner;
+    const bool straight = -dot(one, other) > least_agreement * norm(one) * norm(other);
+    return straight && star.free.all() && sharp_ends.size() == 2 ? Held::to_edge : Held::in_corner;
 }
 
 /// As by the faces of the box, but that neither leaves a sharp edge on which it is. Nothing if the faces want it otherwise.

@@ -11,8 +11,8 @@ namespace kropla {
 
 // Operators on the surface of a region that deforms. Each keeps the volume of the region, to rounding, within the cells it
 // changes, so that what is carried from mesh to mesh keeps its integral and its bounds there; none touches a sharp edge but
-// to split it or to shorten it along itself. Where the surface ends on faces of the box, its line stays there: vertices of it move along the faces, or not at
-// all on those on which it is `pinned`, a bit each.
+// to split it or to shorten it along itself. Where the surface ends on faces of the box, its line stays there: vertices of
+// it move along the faces, or not at all on those on which it is `pinned`, a bit each.
 
 /// A vertex, and where it is to stand.
 struct Displaced {

@@ -120,7 +120,8 @@ toml::path path_of(const std::string& key, const toml::table& file, const std::s
     if (path.empty() || is_index(path[0]) || std::ranges::any_of(path, is_nameless))
         refuse(setting, "has no key; keys are such as size.surface and body[0].radius");
     if (path.str() != key)
-        refuse(setting, fmt::format("is no key; {} might be meant, as keys are such as size.surface and body[0].radius", path.str()));
+        refuse(setting, fmt::format("is no key; {} might be meant, as keys are such as size.surface and body[0].radius",
+                                    path.str()));
     const toml::table* given = file["parameters"].as_table();
     std::vector<std::string> known = given != nullptr ? names_of(*given) : std::vector<std::string>();
     const auto is_parameter = [&](const toml::path_component& part) {

@@ -44,7 +44,8 @@ vtkSmartPointer<vtkUnstructuredGrid> parse(const std::filesystem::path& path, co
         for (const std::string& name : text.of_cells) reader->GetCellDataArraySelection()->DisableArray(name.c_str());
         reader->Update();
         if (!errors.first().empty()) fail(path, "is damaged: " + errors.first());
-        if (reader->GetErrorCode() != 0 || (text.cells > 0 && reader->GetOutput()->GetNumberOfCells() == 0)) fail(path, "is damaged: VTK cannot read it");
+        const bool lost = text.cells > 0 && reader->GetOutput()->GetNumberOfCells() == 0;
+        if (reader->GetErrorCode() != 0 || lost) fail(path, "is damaged: VTK cannot read it");
         return reader->GetOutput();
     } catch (const std::bad_alloc&) {
         fail(path, "asks for more memory than there is: damaged, or too large");
