@@ -221,6 +221,7 @@ std::vector<std::array<Vertex, 2>> outline(const SurfaceStar& a, const SurfaceSt
 struct Meeting {
     Vec3 place;
     Freedom free;
+    bool at_sharp_edge = false;  // either was on one
 };
 /// Nothing if both are on faces and either is on one that the other is not on; or if their edge is not in the face.
 std::optional<Meeting> meeting_by_faces(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line) {
@@ -250,16 +251,18 @@ Held held_by_edges(const Mesh& mesh, const SurfaceStar& star, std::span<const Ve
 
 /// As by the faces of the box, but that neither leaves a sharp edge on which it is. Nothing if the faces want it otherwise.
 std::optional<Meeting> meeting_of(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line) {
-    const auto meeting = meeting_by_faces(mesh, a, b, on_line);
+    auto meeting = meeting_by_faces(mesh, a, b, on_line);
     const std::vector<Vertex> at_a = sharp_ends(a, mesh), at_b = sharp_ends(b, mesh);
     const Held of_a = held_by_edges(mesh, a, at_a), of_b = held_by_edges(mesh, b, at_b);
     if (!meeting || (of_a == Held::not_at_all && of_b == Held::not_at_all)) return meeting;
     const bool along_edge = std::ranges::find(at_a, b.vertex) != at_a.end();
     if (of_a != Held::not_at_all && of_b != Held::not_at_all && !along_edge) return std::nullopt;
+    meeting->at_sharp_edge = true;
     if (of_a == of_b) return of_a == Held::in_corner ? std::nullopt : meeting;
     const SurfaceStar& held = of_a > of_b ? a : b;
     if (!(held.free == meeting->free)) return std::nullopt;
-    return Meeting{mesh.position[held.vertex], held.free};
+    meeting->place = mesh.position[held.vertex];
+    return meeting;
 }
 
 /// Where the one vertex keeps the volume that both had, nearest to where they meet.
@@ -304,8 +307,7 @@ std::optional<std::vector<ComesToBoundary>> coming_to_boundary(const Mesh& mesh,
 /// Do the triangles over the outline of two stars look where all of these looked, or, at a sharp edge, each where that looked
 /// which it replaces; and is none of their sides too long?
 bool is_fair(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, std::span<const std::array<Vertex, 2>> outline,
-             const Vec3& at, double longest) {
-    const bool at_edge = is_sharp(a, mesh) || is_sharp(b, mesh);
+             const Vec3& at, bool at_edge, double longest) {
     const Vec3 all = twice_area(a, mesh) + twice_area(b, mesh);
     return std::ranges::all_of(outline, [&](const std::array<Vertex, 2>& side) {
         const Vec3 &p = mesh.position[side[0]], &q = mesh.position[side[1]];
@@ -327,7 +329,7 @@ std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Regio
     if (!meeting || !to_boundary) return std::nullopt;
     const auto around = outline(a, b);
     const auto at = place_of_one(mesh, a, b, *meeting, around, region);
-    if (!at || !is_fair(mesh, a, b, around, *at, longest)) return std::nullopt;
+    if (!at || !is_fair(mesh, a, b, around, *at, meeting->at_sharp_edge, longest)) return std::nullopt;
 
     SurfaceChange change;
     auto& removed = change.cavity.removed;

@@ -273,9 +273,10 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
             fix_face(step, face, vertices[face], conditions);
             for (Vertex v : vertices[face]) passing[v] = conditions.end[v][static_cast<int>(face / 2)] != 0 ? 1 : 0;
         }
-    for (const FlowFace::Kind kind : {FlowFace::Kind::wall, FlowFace::Kind::slip})
-        for (const auto& facet : facets_of(kind, options, boundary)) keep_along(facet, current.position, passing, conditions);
-    const std::vector<std::array<Vertex, 3>> walls = facets_of(FlowFace::Kind::wall, options, boundary);
+    const auto walls = facets_of(FlowFace::Kind::wall, options, boundary),
+               slipping = facets_of(FlowFace::Kind::slip, options, boundary);
+    for (const auto* facets : {&walls, &slipping})
+        for (const auto& facet : *facets) keep_along(facet, current.position, passing, conditions);
     const auto at_rest = [](const Vec3&, double) { return Vec3{}; };
     for (Vertex v : vertices_of(walls))
         if (passing[v] == 0) fix(step, v, at_rest, "", conditions);

@@ -271,7 +271,8 @@ private:
         const FlowStage stage{current_,         position,  mesh_velocity_,     old,
                               guess_,           material_, conditions_.open,   open_pressure,
                               options_.gravity, per_time,  options_.convection, upper()};
-        share_of_volume_ = shares_of_volume(current_, cells_, blocks_.pattern, position);
+        if (std::ranges::count(conditions_.closed, 1) > 0)
+            share_of_volume_ = shares_of_volume(current_, cells_, blocks_.pattern, position);
         surfaces_.begin(position, mesh_velocity_, at.share * dt_);
         const bool fresh = !solver_.has_matrix();
         assemble(stage, fresh);
@@ -418,7 +419,7 @@ private:
     double level_ = 0;  // [Pa] of the pressure at open faces, beside which that of `guess_` is in pieces that reach them
     BlockSystem system_;
     std::vector<double> reaction_;  // the residual of the last assembly, as it is
-    std::vector<double> share_of_volume_;  // per row
+    std::vector<double> share_of_volume_;  // per row, where a piece is closed
     Array<Vertex, Vec3> mesh_velocity_;
     FlowSolver solver_;
     bool triangular_ = false;  // the preconditioner
