@@ -11,7 +11,9 @@ list(APPEND KROPLA_MESH_FILES
     adapt/improve.cpp
     adapt/remesh.cpp
     adapt/surface_star.cpp
+    adapt/surface_volume.cpp
     adapt/surface.cpp
+    adapt/surface_collapse.cpp
     adapt/adapt_surface.cpp
     adapt/way.cpp
     adapt/move.cpp
