@@ -11,6 +11,7 @@
 #include "simulate/flow_solver.h"
 
 #include <kropla/base/error.h>
+#include "simulate/petsc_objects.h"
 #include "simulate/stop.h"
 
 #include <algorithm>
@@ -64,12 +65,6 @@ void with_entries_of(Vec vector, const Deed& deed) {
     check(VecGetArrayRead(vector, &entries));
     deed(entries);
     check(VecRestoreArrayRead(vector, &entries));
-}
-
-OwnedVec make_vector(const Ranks& ranks, std::size_t size) {
-    Vec vector = nullptr;
-    check(VecCreateMPI(ranks.communicator, static_cast<PetscInt>(size), PETSC_DETERMINE, &vector));
-    return OwnedVec(vector);
 }
 
 /// One number of each coupling as a matrix of its own.
