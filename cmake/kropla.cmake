@@ -51,6 +51,7 @@ function(kropla_test folder)
     target_include_directories(test_${folder} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     kropla_inside(test_${folder})
     kropla_settings(test_${folder})
+    target_compile_options(test_${folder} PRIVATE $<$<CONFIG:Release>:-O1>)  # what is tested is in the libraries
     if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # a second of each file; ccache and its like look files up without it
         target_precompile_headers(test_${folder} PRIVATE <gtest/gtest.h>)
     endif()

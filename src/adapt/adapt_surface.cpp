@@ -16,8 +16,8 @@ namespace {
 /// The surface of one body while it is adapted.
 class Surface {
 public:
-    Surface(Mesh& mesh, Region region, unsigned pinned, Array<Vertex, double>& size, const AdaptOptions& options)
-        : mesh_(mesh), region_(region), pinned_(pinned), size_(size), options_(options) {}
+    Surface(Mesh& mesh, const SurfaceOf& of, Array<Vertex, double>& size, const AdaptOptions& options)
+        : mesh_(mesh), of_(of), size_(size), options_(options) {}
 
     /// All edges of the triangles, each once.
     void take(std::span<const std::array<Vertex, 3>> triangles) {
@@ -43,13 +43,13 @@ public:
         std::ranges::sort(wrong, {}, [&](const Wrong& w) { return std::tuple(rank(w.ratio), w.edge.a, w.edge.b); });
         for (const auto& [was, edge] : wrong) {
             heed(options_.watch);
-            const auto around = surface_shell(mesh_, edge, region_);
+            const auto around = surface_shell(mesh_, edge, of_.region);
             if (!around || ratio(edge) != was) continue;
             if (was < 1) collapse(edge);
             else split(edge, *around);
         }
         for (Vertex v : new_)
-            if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, region_, pinned_), passable);
+            if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, of_), passable);
     }
 
     /// From now on, only edges are looked at that have changed, and those around them.
@@ -57,7 +57,7 @@ public:
         edges_.clear();
         for (Vertex v : changes.vertices) {
             if (!alive(mesh_, v)) continue;
-            for (const auto& [a, b] : surface_star(mesh_, v, region_).sides) {
+            for (const auto& [a, b] : surface_star(mesh_, v, of_.region).sides) {
                 edges_.push_back({std::min(a, b), std::max(a, b)});
                 edges_.push_back({std::min(a, v), std::max(a, v)});
             }
@@ -72,15 +72,15 @@ public:
             const auto edges = edges_;
             for (const Edge e : edges) {
                 heed(options_.watch);
-                const auto around = surface_shell(mesh_, e, region_);
+                const auto around = surface_shell(mesh_, e, of_.region);
                 if (!around || !is_flat_pair(e)) continue;
                 if (swap(e, *around, passable)) helped = true;
             }
             for (Vertex v : vertices()) {
                 if (is_pinned(v)) continue;
-                const SurfaceStar star = surface_star(mesh_, v, region_);
+                const SurfaceStar star = surface_star(mesh_, v, of_.region);
                 if (least_angle(mesh_, star, mesh_.position[v]) >= poor_angle) continue;
-                if (try_change(slide(mesh_, v, region_), passable)) {
+                if (try_change(slide(mesh_, v, of_), passable)) {
                     ++changes.moved;
                     helped = true;
                 }
@@ -93,14 +93,14 @@ public:
     bool help(Tet t) {
         for (std::size_t k = 0; k < tet_edges.size(); ++k) {
             const Edge e = tet_edge(mesh_, t, k);
-            const auto around = surface_shell(mesh_, e, region_);
+            const auto around = surface_shell(mesh_, e, of_.region);
             if (!around) continue;
             if (swap(e, *around, better)) return true;
         }
         const auto vertices = mesh_.tets[t];
         for (Vertex v : vertices) {
-            if (is_pinned(v) || surface_star(mesh_, v, region_).sides.empty()) continue;
-            if (try_change(slide_for_cells(mesh_, v, region_), better)) {
+            if (is_pinned(v) || surface_star(mesh_, v, of_.region).sides.empty()) continue;
+            if (try_change(slide_for_cells(mesh_, v, of_), better)) {
                 ++changes.moved;
                 return true;
             }
@@ -115,7 +115,7 @@ private:
     enum Demand { passable, better };
 
     [[nodiscard]] bool is_pinned(Vertex v) const {
-        return pinned_ != 0 && (constraint(mesh_, v, ball(mesh_, v)).patches & pinned_) != 0;
+        return of_.pinned != 0 && (constraint(mesh_, v, ball(mesh_, v)).patches & of_.pinned) != 0;
     }
     [[nodiscard]] double ratio(Edge e) const {
         return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size_[e.a] + size_[e.b]) / 2);
@@ -132,7 +132,7 @@ private:
     /// The angles across the edge add up to more than those of a quadrangle in a circle.
     [[nodiscard]] bool is_flat_pair(Edge e) const {
         double sum = 0;
-        for (const auto& side : surface_star(mesh_, e.a, region_).sides) {
+        for (const auto& side : surface_star(mesh_, e.a, of_.region).sides) {
             if (side[0] != e.b && side[1] != e.b) continue;
             const Vec3& tip = mesh_.position[side[0] == e.b ? side[1] : side[0]];
             const Vec3 p = mesh_.position[e.a] - tip, q = mesh_.position[e.b] - tip;
@@ -154,7 +154,7 @@ private:
         const Vertex v = done.vertices.front();
         if (size_.size() < mesh_.position.size()) size_.resize(mesh_.position.size(), size_[v.value == 0 ? v : Vertex(0)]);
         double sum = 0;
-        const auto around = ring(surface_star(mesh_, v, region_));
+        const auto around = ring(surface_star(mesh_, v, of_.region));
         for (Vertex w : around) {
             sum += size_[w];
             edges_.push_back({std::min(v, w), std::max(v, w)});
@@ -172,12 +172,12 @@ private:
     bool collapse(Edge e) {
         if (is_pinned(e.a) || is_pinned(e.b)) return false;
         const double longest = longest_by_size * options_.split_above * (size_[e.a] + size_[e.b]) / 2;
-        if (!try_change(surface_collapse(mesh_, e, region_, longest), passable)) return false;
+        if (!try_change(surface_collapse(mesh_, e, of_, longest), passable)) return false;
         ++changes.collapses;
         return true;
     }
     bool swap(Edge e, const Shell& around, Demand demand) {
-        const auto change = surface_swap(mesh_, around, e, region_, pinned_);
+        const auto change = surface_swap(mesh_, around, e, of_);
         if (!try_change(change, demand)) return false;
         const Vertex c = change->moved[2].vertex, d = change->moved[3].vertex;
         edges_.push_back({std::min(c, d), std::max(c, d)});
@@ -186,8 +186,7 @@ private:
     }
 
     Mesh& mesh_;
-    Region region_;
-    unsigned pinned_;  // faces of the box
+    SurfaceOf of_;
     Array<Vertex, double>& size_;
     const AdaptOptions& options_;
     std::vector<Edge> edges_;   // of the surface; some may be gone
@@ -207,20 +206,19 @@ bool has_wrong_size(const Mesh& mesh, const BodySurface& surface, const Array<Ve
     });
 }
 
-Changes adapt_surface(Mesh& mesh, const BodySurface& surface, Array<Vertex, double>& size, bool all,
-                      const AdaptOptions& options, unsigned pinned) {
-    Surface adapted(mesh, region_of_body(surface.body), pinned, size, options);
-    adapted.take(surface.triangles);
+Changes adapt_surface(Mesh& mesh, const SurfaceOf& of, std::span<const std::array<Vertex, 3>> triangles,
+                      Array<Vertex, double>& size, bool all, const AdaptOptions& options) {
+    Surface adapted(mesh, of, size, options);
+    adapted.take(triangles);
     adapted.adapt_sizes();
     if (!all) adapted.keep_to_changed();
     adapted.adapt_shapes();
     return adapted.changes;
 }
 
-Changes improve_surface(Mesh& mesh, std::span<const Tet> cells, Region region, const AdaptOptions& options,
-                        unsigned pinned) {
+Changes improve_surface(Mesh& mesh, const SurfaceOf& of, std::span<const Tet> cells, const AdaptOptions& options) {
     Array<Vertex, double> unused(mesh.position.size(), 1);
-    Surface improved(mesh, region, pinned, unused, options);
+    Surface improved(mesh, of, unused, options);
     for (Tet t : cells)
         if (is_worse(mesh, t, options.good_enough)) (void)improved.help(t);
     return improved.changes;

@@ -154,8 +154,6 @@ inline constexpr int most_slide_halvings = 3;
 inline constexpr double most_shift = 0.3;
 /// [-] cosine between the normals of a triangle before and after. Smaller: folds. Larger: changes are refused. Chosen.
 inline constexpr double least_agreement = 0.5;
-/// [-] cosine of the angle between normals, 75 degrees: beyond it an edge is sharp, and kept. Chosen.
-inline constexpr double sharp = 0.25;
 /// to fit a quadric of six unknowns by least squares, and its least pivot [of the largest, scaled by the distances]: with
 /// less, the surface is taken as flat. Chosen.
 inline constexpr std::size_t least_quadric_points = 8;

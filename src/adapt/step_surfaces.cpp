@@ -29,6 +29,10 @@ std::vector<Tet> cells_at(const Mesh& mesh, std::span<const Vertex> vertices) {
     return cells.list();
 }
 
+SurfaceOf surface_of(std::size_t number, const Body& body) {
+    return {region_of_body(number), body.pinned, body.sharp};
+}
+
 }  // namespace
 
 void MeshStep::find_deforming() {
@@ -84,7 +88,8 @@ void MeshStep::adapt_surfaces(const Snapshot& at_time, const AdaptOptions& optio
     Changes of_surfaces;
     for (const BodySurface& surface : adapted_) {
         const Body& body = domain_.bodies[surface.body];
-        of_surfaces += adapt_surface(current_, surface, motion_.size, bool(body.deformation), options, body.pinned);
+        of_surfaces += adapt_surface(current_, surface_of(surface.body, body), surface.triangles, motion_.size,
+                                     bool(body.deformation), options);
     }
     auto cells = cells_at(current_, of_surfaces.vertices);
     cells.insert(cells.end(), of_surfaces.cells.begin(), of_surfaces.cells.end());
@@ -108,7 +113,7 @@ void MeshStep::improve_surfaces(std::vector<Tet> cells, const Snapshot& at_time,
             const Body& of = domain_.bodies[surface.body];
             AdaptOptions of_surface = options;
             if (of.keeps_volume) of_surface.good_enough *= poor_at_liquids;
-            more += improve_surface(current_, cells, region_of_body(surface.body), of_surface, of.pinned);
+            more += improve_surface(current_, surface_of(surface.body, of), cells, of_surface);
         }
         if (more.vertices.empty()) return;
         const auto at_moved = cells_at(current_, more.vertices);

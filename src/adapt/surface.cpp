@@ -160,10 +160,10 @@ SurfaceChange surface_split(const Mesh& mesh, const Shell& shell, Edge edge) {
     return change;
 }
 
-std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, Region region, unsigned pinned) {
+std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, Edge edge, const SurfaceOf& of) {
     if (!shell.closed) return std::nullopt;
     const std::size_t n = shell.tets.size();
-    const auto inside = [&](std::size_t i) { return mesh.region[shell.tets[i % n]] == region; };
+    const auto inside = [&](std::size_t i) { return mesh.region[shell.tets[i % n]] == of.region; };
     // From ring[first] on, cells are inside; from ring[second] on, outside. Seen from outside, with edge.a below, ring goes
     // round counter-clockwise about the edge, so that (a, b, c) with c = ring[second] looks outwards.
     std::size_t first = n, second = n;
@@ -178,11 +178,11 @@ std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, 
         return twice_area(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
     };
     const Vec3 normal = area(one) + area(other);
-    if (is_sharp(area(one), area(other)) || !(dot(area(new_one), normal) > 0) || !(dot(area(new_other), normal) > 0))
+    if (is_sharp(area(one), area(other), of.sharp) || !(dot(area(new_one), normal) > 0) || !(dot(area(new_other), normal) > 0))
         return std::nullopt;
-    const SurfaceStar at_c = surface_star(mesh, c, region);
+    const SurfaceStar at_c = surface_star(mesh, c, of.region);
     if (std::ranges::binary_search(ring(at_c), d)) return std::nullopt;
-    if (!at_c.free.all() && !surface_star(mesh, d, region).free.all()) return std::nullopt;  // it might lie in a face
+    if (!at_c.free.all() && !surface_star(mesh, d, of.region).free.all()) return std::nullopt;  // it might lie in a face
 
     SurfaceChange change;
     change.cavity.removed = shell.tets;
@@ -193,7 +193,7 @@ std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, 
         if (!fill_half(mesh, edge, half, mesh.region[shell.tets[from]], change.cavity)) return std::nullopt;
     }
     const std::array<Vertex, 4> corners = {a, b, c, d};
-    const auto before = triangles_at(mesh, corners, region);
+    const auto before = triangles_at(mesh, corners, of.region);
     std::vector<Triangle> after;
     const auto same = [](Triangle s, Triangle t) {
         std::ranges::sort(s);
@@ -204,17 +204,17 @@ std::optional<SurfaceChange> surface_swap(const Mesh& mesh, const Shell& shell, 
     const std::vector<Triangle> kept = after;
     after.insert(after.end(), {new_one, new_other});
     for (Vertex v : corners) change.moved.push_back({v, mesh.position[v]});
-    const double shift = keep_volume(mesh, before, after, normalised(normal), pinned, change.moved);
+    const double shift = keep_volume(mesh, before, after, normalised(normal), of.pinned, change.moved);
     if (!(std::abs(shift) <= most_shift * distance(mesh.position[c], mesh.position[d]))) return std::nullopt;
     if (!agree(kept, mesh, {mesh, change.moved})) return std::nullopt;
     look_at_moved(mesh, change);
     return if_valid(std::move(change));
 }
 
-std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region region, unsigned pinned) {
-    const SurfaceStar star = surface_star(mesh, v, region);
-    if (is_sharp(star, mesh) || !star.free.all()) return std::nullopt;
-    const auto height = height_of_quadric(mesh, star, region);
+std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, const SurfaceOf& of) {
+    const SurfaceStar star = surface_star(mesh, v, of.region);
+    if (is_sharp(star, mesh, of.sharp) || !star.free.all()) return std::nullopt;
+    const auto height = height_of_quadric(mesh, star, of);
     if (!height) return std::nullopt;
     const Vec3 normal = normalised(twice_area(star, mesh)), here = mesh.position[v];
     std::vector<Vertex> vertices = ring(star);
@@ -225,8 +225,8 @@ std::optional<SurfaceChange> raise_to_quadric(const Mesh& mesh, Vertex v, Region
     change.moved.push_back({v, here + *height * normal});
     for (Vertex w : vertices) change.moved.push_back({w, mesh.position[w]});
     vertices.push_back(v);
-    const auto triangles = triangles_at(mesh, vertices, region);
-    const double shift = keep_volume(mesh, triangles, triangles, normal, pinned, change.moved);
+    const auto triangles = triangles_at(mesh, vertices, of.region);
+    const double shift = keep_volume(mesh, triangles, triangles, normal, of.pinned, change.moved);
     if (!(std::abs(shift) <= most_shift * shortest)) return std::nullopt;
     if (!agree(triangles, mesh, {mesh, change.moved})) return std::nullopt;
     look_at_moved(mesh, change);
@@ -283,18 +283,18 @@ bool agrees(const Mesh& mesh, const SurfaceStar& star, const Vec3& place) {
 
 }  // namespace
 
-std::optional<SurfaceChange> slide(const Mesh& mesh, Vertex v, Region region) {
-    const SurfaceStar star = surface_star(mesh, v, region);
-    if (is_sharp(star, mesh)) return std::nullopt;
+std::optional<SurfaceChange> slide(const Mesh& mesh, Vertex v, const SurfaceOf& of) {
+    const SurfaceStar star = surface_star(mesh, v, of.region);
+    if (is_sharp(star, mesh, of.sharp)) return std::nullopt;
     const Vec3 here = mesh.position[v];
     const Vec3 place = here + way_to_middle(mesh, star, free_normal(mesh, star));
     if (!(least_angle(mesh, star, place) > least_angle(mesh, star, here)) || !agrees(mesh, star, place)) return std::nullopt;
     return if_valid(at_place(mesh, v, place));
 }
 
-std::optional<SurfaceChange> slide_for_cells(const Mesh& mesh, Vertex v, Region region) {
-    const SurfaceStar star = surface_star(mesh, v, region);
-    if (is_sharp(star, mesh)) return std::nullopt;
+std::optional<SurfaceChange> slide_for_cells(const Mesh& mesh, Vertex v, const SurfaceOf& of) {
+    const SurfaceStar star = surface_star(mesh, v, of.region);
+    if (is_sharp(star, mesh, of.sharp)) return std::nullopt;
     const Vec3 here = mesh.position[v], normal = free_normal(mesh, star);
     // Down the slope of the worst cell's ratio, in the plane.
     double worst = 0;

@@ -64,9 +64,9 @@ Held held_by_edges(const Mesh& mesh, const SurfaceStar& star, std::span<const Ve
 }
 
 /// As by the faces of the box, but that neither leaves a sharp edge on which it is. Nothing if the faces want it otherwise.
-std::optional<Meeting> meeting_of(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line) {
+std::optional<Meeting> meeting_of(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, bool on_line, double sharp) {
     auto meeting = meeting_by_faces(mesh, a, b, on_line);
-    const std::vector<Vertex> at_a = sharp_ends(a, mesh), at_b = sharp_ends(b, mesh);
+    const std::vector<Vertex> at_a = sharp_ends(a, mesh, sharp), at_b = sharp_ends(b, mesh, sharp);
     const Held of_a = held_by_edges(mesh, a, at_a), of_b = held_by_edges(mesh, b, at_b);
     if (!meeting || (of_a == Held::not_at_all && of_b == Held::not_at_all)) return meeting;
     const bool along_edge = std::ranges::find(at_a, b.vertex) != at_a.end();
@@ -133,16 +133,16 @@ bool is_fair(const Mesh& mesh, const SurfaceStar& a, const SurfaceStar& b, std::
 
 }  // namespace
 
-std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, Region region, double longest) {
-    const SurfaceStar a = surface_star(mesh, edge.a, region), b = surface_star(mesh, edge.b, region);
+std::optional<SurfaceChange> surface_collapse(const Mesh& mesh, Edge edge, const SurfaceOf& of, double longest) {
+    const SurfaceStar a = surface_star(mesh, edge.a, of.region), b = surface_star(mesh, edge.b, of.region);
     const auto has_b = [&](const std::array<Vertex, 2>& side) { return side[0] == edge.b || side[1] == edge.b; };
     const bool on_line = std::ranges::count_if(a.sides, has_b) == 1;
     if (count_shared(a, b) != (on_line ? 1 : 2)) return std::nullopt;
-    const auto meeting = meeting_of(mesh, a, b, on_line);
+    const auto meeting = meeting_of(mesh, a, b, on_line, of.sharp);
     const auto to_boundary = coming_to_boundary(mesh, edge, a.cells);
     if (!meeting || !to_boundary) return std::nullopt;
     const auto around = outline(a, b);
-    const auto at = place_of_one(mesh, a, b, *meeting, around, region);
+    const auto at = place_of_one(mesh, a, b, *meeting, around, of.region);
     if (!at || !is_fair(mesh, a, b, around, *at, meeting->at_sharp_edge, longest)) return std::nullopt;
 
     SurfaceChange change;

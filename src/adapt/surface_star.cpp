@@ -75,18 +75,18 @@ Vec3 twice_area(const SurfaceStar& star, const Mesh& mesh) {
     return sum;
 }
 
-bool is_sharp(const Vec3& one_normal, const Vec3& other_normal) {
+bool is_sharp(const Vec3& one_normal, const Vec3& other_normal, double sharp) {
     return dot(one_normal, other_normal) < sharp * norm(one_normal) * norm(other_normal);
 }
 
-std::vector<Vertex> sharp_ends(const SurfaceStar& star, const Mesh& mesh) {
+std::vector<Vertex> sharp_ends(const SurfaceStar& star, const Mesh& mesh, double sharp) {
     const auto normal = [&](const std::array<Vertex, 2>& side) {
         return twice_area(mesh.position[star.vertex], mesh.position[side[0]], mesh.position[side[1]]);
     };
     std::vector<Vertex> ends;
     for (const auto& side : star.sides)
         for (const auto& next : star.sides)
-            if (next[0] == side[1] && is_sharp(normal(side), normal(next))) ends.push_back(side[1]);
+            if (next[0] == side[1] && is_sharp(normal(side), normal(next), sharp)) ends.push_back(side[1]);
     return ends;
 }
 
@@ -97,19 +97,19 @@ std::vector<Vertex> ring(const SurfaceStar& star) {
     return vertices;
 }
 
-std::vector<Vertex> two_rings(const Mesh& mesh, const SurfaceStar& star, Region region) {
+std::vector<Vertex> two_rings(const Mesh& mesh, const SurfaceStar& star, const SurfaceOf& of) {
     std::vector<Vertex> vertices = ring(star);
     const std::vector<Vertex> first = vertices;
     for (Vertex v : first)
-        if (const SurfaceStar next = surface_star(mesh, v, region); !is_sharp(next, mesh))
+        if (const SurfaceStar next = surface_star(mesh, v, of.region); !is_sharp(next, mesh, of.sharp))
             for (const auto& side : next.sides) vertices.insert(vertices.end(), side.begin(), side.end());
     sort_once(vertices);
     std::erase(vertices, star.vertex);
     return vertices;
 }
 
-std::optional<double> height_of_quadric(const Mesh& mesh, const SurfaceStar& star, Region region) {
-    const std::vector<Vertex> around = two_rings(mesh, star, region);
+std::optional<double> height_of_quadric(const Mesh& mesh, const SurfaceStar& star, const SurfaceOf& of) {
+    const std::vector<Vertex> around = two_rings(mesh, star, of);
     if (around.size() < least_quadric_points) return std::nullopt;
     const Vec3 here = mesh.position[star.vertex], normal = normalised(twice_area(star, mesh));
     const auto [e, f] = tangents(normal);

@@ -236,6 +236,7 @@ void read_bodies(const CaseTable& file, Case& given) {
             refuse_with_cut(table, given, body);
             body = cut_body(std::move(body));
         }
+        if (body.deformation) body = keep_edges(std::move(body));
         take_body(given, std::move(body), std::move(written));
     }
     const auto tables = file.tables("body");

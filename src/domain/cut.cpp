@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -203,8 +204,18 @@ Shape cut_by(const Box& box, const Shape& shape) {
     return cut;
 }
 
+Body keep_edges(Body body) {
+    constexpr double part = 0.8;  // of a crease's angle, to which it may be bent
+    const Shape& shape = body.shape;
+    if (!shape.surface) return body;
+    const double least = (shape.cut ? shape.cut->whole : *shape.surface).least_crease();
+    body.sharp = std::max(blunt, std::cos(std::min(part * least, std::numbers::pi)));
+    return body;
+}
+
 Body cut_body(Body body) {
     if (reached_faces(body.shape) == 0 || body.deformation) return body;
+    body = keep_edges(std::move(body));
     body.deformation = [motion = body.motion, centre = body.shape.centre](const Vec3& x, double t0, double t1) {
         const Pose from = motion(t0), to = motion(t1);
         if (from.displacement == to.displacement && from.rotation.axes == to.rotation.axes) return x;

@@ -53,6 +53,9 @@ struct LayerOptions {
     return layer.side != LayerOptions::Side::outside;
 }
 
+/// Cosine of an angle between normals, 75 degrees, that no smooth surface has for want of triangles. Chosen.
+inline constexpr double blunt = 0.25;
+
 struct Body {
     std::string name;
     Shape shape;  // at t = 0 with the motion's displacement not yet applied
@@ -64,6 +67,8 @@ struct Body {
     Deformation deformation = {};  // none: it moves rigidly. Else its surface goes with it, motion is not asked, and of a
                                    //   moving mesh's domain `shape` is what the mesh has at its time
     bool keeps_volume = false;     // as it deforms, by an even shift along the normals of its surface
+    double sharp = blunt;          // as it deforms, cosine of the angle between normals beyond which edges of it are kept;
+                                   //   `keep_edges` (solids.h) finds it for a shape
     unsigned pinned = 0;           // faces of the box, a bit each, along which the line does not move in which it ends there
 };
 

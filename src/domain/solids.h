@@ -26,6 +26,9 @@ namespace kropla {
 /// if it reaches through all six.
 [[nodiscard]] Shape cut_by(const Box& box, const Shape& shape);
 
+/// The body, as which edges it has that are kept as it deforms: those of its shape that are creases, however blunt, to a part.
+[[nodiscard]] Body keep_edges(Body body);
+
 /// A body with such a shape, which its motion takes along: of a rigid motion, which turns it about the centroid of what is in
 /// the box, the deformation that is it. Where it reaches through faces, the lines in which it meets them move along these.
 [[nodiscard]] Body cut_body(Body body);

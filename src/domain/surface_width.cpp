@@ -86,6 +86,14 @@ double TriangulatedSurface::radius_at(std::size_t triangle) const {
     return radius;
 }
 
+double TriangulatedSurface::least_crease() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < triangles().size(); ++t)
+        for (const Vec3& at_edge : edge_normal_[t])
+            if (const double bend = 2 * angle_between(inside_normal_[t], at_edge); bend > sharp) least = std::min(least, bend);
+    return least;
+}
+
 double TriangulatedSurface::touching_ball(const Vec3& x, bool inside, double most) const {
     constexpr int rounds = 100;  // each brings the ball to a point that was within it
     constexpr double rounding = 1e-9;

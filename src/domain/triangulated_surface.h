@@ -44,8 +44,12 @@ public:
     /// parallel to within 20 degrees, or through the body to such a face of the box [m]; infinite if none is within `most`,
     /// and outwards of an open one.
     [[nodiscard]] double width_between(const Vec3& x, const Vec3& normal, bool inside, double most) const;
+    /// Outwards at a point of it, of unit length.
+    [[nodiscard]] Vec3 normal(std::size_t point) const { return normalised(corner_normal_[point]); }
     /// The radius by which it bends from a triangle to its neighbours [m], over edges that are not `sharp`; infinite if flat.
     [[nodiscard]] double radius_at(std::size_t triangle) const;
+    /// The least angle between normals beyond `sharp` at an edge [rad]; infinite if it has no crease.
+    [[nodiscard]] double least_crease() const;
     /// Its thin places, for sizes between these [m]; found once, for all that share the surface.
     [[nodiscard]] std::shared_ptr<const ThinPlaces> thin_places(double least, double most) const;
     /// The radius of the ball that touches it at the place nearest to `x`, from inside or outside, with none of its points

@@ -103,14 +103,13 @@ Changes remesh_interfaces(Mesh& mesh, std::span<const Interface> interfaces, con
     Changes changes;
     for (const Interface& interface : interfaces) {
         auto size = sizes_of(mesh, interface);
-        const BodySurface surface{as_size(interface.inner.value) - 1, vertices_of(interface), interface.triangles};
-        changes += adapt_surface(mesh, surface, size, true, options);
+        changes += adapt_surface(mesh, {interface.inner}, interface.triangles, size, true, options);
     }
     changes += improve_mesh(mesh, options);
     for (int round = 0; round < most_rounds; ++round) {
         const std::vector<Tet> bad = bad_cells(mesh, options.good_enough);
         Changes more;
-        for (const Interface& interface : interfaces) more += improve_surface(mesh, bad, interface.inner, options);
+        for (const Interface& interface : interfaces) more += improve_surface(mesh, {interface.inner}, bad, options);
         if (more.vertices.empty()) break;
         changes += more;
         changes += improve_mesh(mesh, options);

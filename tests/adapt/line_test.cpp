@@ -88,10 +88,10 @@ void expect_kept(int count, const Propose& propose) {
 
 TEST(LinesOnFaces, AreKeptByTheOperatorsOfSurfaces) {
     expect_kept(10, [](const Mesh& mesh, const Shell& shell, Edge edge) { return std::optional(surface_split(mesh, shell, edge)); });
-    expect_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return surface_collapse(mesh, edge, body, 1); });
-    expect_kept(5, [](const Mesh& mesh, const Shell& shell, Edge edge) { return surface_swap(mesh, shell, edge, body); });
-    expect_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return slide(mesh, edge.a, body); });
-    expect_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return slide_for_cells(mesh, edge.a, body); });
+    expect_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return surface_collapse(mesh, edge, {body}, 1); });
+    expect_kept(5, [](const Mesh& mesh, const Shell& shell, Edge edge) { return surface_swap(mesh, shell, edge, {body}); });
+    expect_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return slide(mesh, edge.a, {body}); });
+    expect_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return slide_for_cells(mesh, edge.a, {body}); });
 }
 
 TEST(LinesOnFaces, EdgesOfTheLineSplitAndCollapse) {
@@ -103,14 +103,14 @@ TEST(LinesOnFaces, EdgesOfTheLineSplitAndCollapse) {
     for (const Edge edge : edges) {
         const auto around = surface_shell(mesh, edge, body);
         ASSERT_TRUE(around && !around->closed);
-        EXPECT_FALSE(surface_swap(mesh, *around, edge, body));
+        EXPECT_FALSE(surface_swap(mesh, *around, edge, {body}));
         (void)carry_out_surface(mesh, surface_split(mesh, *around, edge), changes);
     }
     EXPECT_EQ(line_of(surface_of(domain, mesh)).size(), 2 * edges.size());
     std::size_t collapsed = 0;
     for (const Edge edge : line_of(surface_of(domain, mesh))) {
         if (!alive(mesh, edge.a) || !alive(mesh, edge.b)) continue;
-        const auto change = surface_collapse(mesh, edge, body, 1);
+        const auto change = surface_collapse(mesh, edge, {body}, 1);
         if (!change) continue;
         (void)carry_out_surface(mesh, *change, changes);
         ++collapsed;

@@ -72,17 +72,17 @@ TEST(SurfaceOperators, ASplitKeepsTheVolume) {
     });
 }
 TEST(SurfaceOperators, ACollapseKeepsTheVolume) {
-    expect_volume_kept(10, [](const Mesh& mesh, const Shell&, Edge edge) { return surface_collapse(mesh, edge, body, 1); });
+    expect_volume_kept(10, [](const Mesh& mesh, const Shell&, Edge edge) { return surface_collapse(mesh, edge, {body}, 1); });
 }
 TEST(SurfaceOperators, ASwapKeepsTheVolume) {
     expect_volume_kept(20, [](const Mesh& mesh, const Shell& around, Edge edge) {
-        return surface_swap(mesh, around, edge, body);
+        return surface_swap(mesh, around, edge, {body});
     });
 }
 TEST(SurfaceOperators, SlidesAndRaisesKeepTheVolume) {
-    expect_volume_kept(20, [](const Mesh& mesh, const Shell&, Edge edge) { return slide(mesh, edge.a, body); });
-    expect_volume_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return slide_for_cells(mesh, edge.a, body); });
-    expect_volume_kept(20, [](const Mesh& mesh, const Shell&, Edge edge) { return raise_to_quadric(mesh, edge.a, body); });
+    expect_volume_kept(20, [](const Mesh& mesh, const Shell&, Edge edge) { return slide(mesh, edge.a, {body}); });
+    expect_volume_kept(5, [](const Mesh& mesh, const Shell&, Edge edge) { return slide_for_cells(mesh, edge.a, {body}); });
+    expect_volume_kept(20, [](const Mesh& mesh, const Shell&, Edge edge) { return raise_to_quadric(mesh, edge.a, {body}); });
 }
 
 TEST(SurfaceOperators, AVertexOfASplitComesToBeOnTheSphere) {
@@ -96,7 +96,7 @@ TEST(SurfaceOperators, AVertexOfASplitComesToBeOnTheSphere) {
     const auto done = carry_out_surface(mesh, surface_split(mesh, *surface_shell(mesh, edge, body), edge), changes);
     const Vertex v = done.vertices.front();
     flat = std::abs(out(v) - radius);
-    const auto change = raise_to_quadric(mesh, v, body);
+    const auto change = raise_to_quadric(mesh, v, {body});
     ASSERT_TRUE(change);
     (void)carry_out_surface(mesh, *change, changes);
     raised = std::abs(out(v) - radius);
@@ -124,19 +124,19 @@ TEST(SurfaceOperators, SharpEdgesStayWhereTheyAre) {
     for (const Edge edge : edges_of(deforming_surfaces(domain, mesh).front())) {
         const Vec3 &a = mesh.position[edge.a], &b = mesh.position[edge.b];
         ASSERT_NEAR(largest(a), 0.5, 1e-12);
-        if (const auto change = surface_collapse(mesh, edge, body, 10)) {
+        if (const auto change = surface_collapse(mesh, edge, {body}, 10)) {
             const Vec3 at = change->cavity.inserted.front();
             EXPECT_NEAR(largest(at), 0.5, 1e-12);
             EXPECT_GE(count_faces(at), std::max(count_faces(a), count_faces(b)));
             collapses += count_faces(at) > 1 ? 1 : 0;
         }
-        if (!is_sharp(surface_star(mesh, edge.a, body), mesh)) {
+        if (!is_sharp(surface_star(mesh, edge.a, body), mesh, blunt)) {
             ++smooth;
             continue;
         }
         ++sharp;
-        EXPECT_FALSE(slide(mesh, edge.a, body));
-        EXPECT_FALSE(raise_to_quadric(mesh, edge.a, body));
+        EXPECT_FALSE(slide(mesh, edge.a, {body}));
+        EXPECT_FALSE(raise_to_quadric(mesh, edge.a, {body}));
     }
     EXPECT_GE(sharp, 60);
     EXPECT_GE(smooth, 60);
@@ -144,8 +144,8 @@ TEST(SurfaceOperators, SharpEdgesStayWhereTheyAre) {
     int heights = 0;
     for (Vertex v : mesh.position.indices()) {
         const SurfaceStar star = surface_star(mesh, v, body);
-        if (star.sides.empty() || is_sharp(star, mesh)) continue;
-        if (const auto height = height_of_quadric(mesh, star, body)) {
+        if (star.sides.empty() || is_sharp(star, mesh, blunt)) continue;
+        if (const auto height = height_of_quadric(mesh, star, {body})) {
             EXPECT_NEAR(*height, 0, 1e-12);
             ++heights;
         }

@@ -3,6 +3,7 @@
 #include "case/case_text.h"
 #include "run_results.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -118,6 +119,62 @@ steps = 10
         EXPECT_NEAR(std::stod(columns.at("area_block")[step]), x * y + y * z + z * x, 1e-12);
     }
     for (const std::string& r : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(r), 6);
+}
+
+/// A prism 2 m high over a polygon of corners on two circles in turn, as OBJ.
+std::string prism(int corners, double outer, double inner) {
+    std::string points, sides, floor = "f", top = "f";
+    for (int i = 0; i < corners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / corners, r = i % 2 == 0 ? outer : inner;
+        for (const char* z : {"-1", "1"}) points += fmt::format("v {} {} {}\n", r * std::cos(angle), r * std::sin(angle), z);
+        const int low = 2 * i + 1, next = 2 * ((i + 1) % corners) + 1;
+        sides += fmt::format("f {0} {2} {3} {1}\nf {4} {5} {6}\nf {7} {8} {9}\n", low, low + 1, next, next + 1, next, low,
+                             2 * corners + 1, low + 1, next + 1, 2 * corners + 2);
+    }
+    return points + "v 0 0 -1\nv 0 0 1\n" + sides;
+}
+
+// Edges of 60 degrees as those of 90: none is rounded; and where some of 66 degrees are near each other, cells do not get smaller.
+TEST(RunSolids, PrismsKeepTheirEdgesAsTheyComeIn) {
+    struct Prism {
+        int corners;
+        double outer, inner, area, length;
+    };
+    const double fifth = std::numbers::pi / 5, side = std::sqrt(0.49 + 0.09 - 0.42 * std::cos(fifth));
+    for (const auto& [corners, outer, inner, area, length] :
+         {Prism{6, 0.7, 0.7, 1.5 * std::sqrt(3) * 0.49, 4.2}, Prism{10, 0.7, 0.3, 5 * 0.21 * std::sin(fifth), 10 * side}}) {
+        const TemporaryFolder folder;
+        write(folder.path / "prism.obj", prism(corners, outer, inner));
+        write(folder.path / "a.toml", R"toml([domain]
+min = [-1.5, -1.5, -1]
+max = [1.5, 1.5, 1]
+[[body]]
+name = "prism"
+shape = "surface"
+file = "prism.obj"
+centre = [0, 0, -1.4]
+cut = true
+[body.motion]
+z = "0.6*t"
+[size]
+surface = 0.3
+growth = 0.3
+far = 0.6
+[time]
+end = 0.6
+steps = 6
+)toml");
+        const Outcome ended = kropla_program(folder, "run a.toml --out d");
+        ASSERT_EQ(ended.code, 0) << ended.err;
+        const auto columns = lasting_columns(folder.path / "d");
+        for (std::size_t step = 0; step < columns.at("time").size(); ++step) {
+            const double height = 0.6 + 0.6 * std::stod(columns.at("time")[step]);
+            EXPECT_NEAR(std::stod(columns.at("volume_prism")[step]), area * height, 1e-12);
+            EXPECT_NEAR(std::stod(columns.at("area_prism")[step]), area + length * height, 1e-12);
+            EXPECT_LE(std::stod(columns.at("tets")[step]), 2200);
+        }
+        for (const std::string& r : columns.at("max_aspect_ratio")) EXPECT_LE(std::stod(r), 6.5);
+    }
 }
 
 constexpr std::string_view plate_case = R"toml([domain]
