@@ -31,23 +31,10 @@ public:
                 if (e.a < e.b && !std::ranges::binary_search(known, e, comes_before)) edges_.push_back(e);
     }
 
+    /// The edges that are new after a round may have wrong sizes still.
     void adapt_sizes() {
-        struct Wrong {
-            double ratio;
-            Edge edge;
-        };
-        std::vector<Wrong> wrong;
-        for (const Edge e : edges_)
-            if (const double r = ratio(e); r < options_.collapse_below || r > options_.split_above) wrong.push_back({r, e});
-        const auto rank = [](double r) { return r > 1 ? 1 + 1 / r : r; };
-        std::ranges::sort(wrong, {}, [&](const Wrong& w) { return std::tuple(rank(w.ratio), w.edge.a, w.edge.b); });
-        for (const auto& [was, edge] : wrong) {
-            heed(options_.watch);
-            const auto around = surface_shell(mesh_, edge, of_.region);
-            if (!around || ratio(edge) != was) continue;
-            if (was < 1) collapse(edge);
-            else split(edge, *around);
-        }
+        for (int round = 0; round < most_surface_rounds; ++round)
+            if (!adapt_sizes_once()) break;
         for (Vertex v : new_)
             if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, of_), passable);
     }
@@ -89,7 +76,7 @@ public:
         }
     }
 
-    /// Whatever helps the cell, if it is at the surface.
+    /// What helps the cell, if it is at the surface, and changes that least.
     bool help(Tet t) {
         for (std::size_t k = 0; k < tet_edges.size(); ++k) {
             const Edge e = tet_edge(mesh_, t, k);
@@ -105,6 +92,16 @@ public:
                 return true;
             }
         }
+        for (std::size_t k = 0; k < tet_edges.size(); ++k)
+            if (const Edge e = tet_edge(mesh_, t, k); surface_shell(mesh_, e, of_.region) && collapse(e, longest_at(e), better))
+                return true;
+        for (std::size_t k = 0; k < tet_edges.size(); ++k) {
+            const Edge e = tet_edge(mesh_, t, k);
+            const auto around = surface_shell(mesh_, e, of_.region);
+            if (!around || !try_change(surface_split(mesh_, *around, e), better)) continue;
+            ++changes.splits;
+            return true;
+        }
         return false;
     }
 
@@ -118,7 +115,16 @@ private:
         return of_.pinned != 0 && (constraint(mesh_, v, ball(mesh_, v)).patches & of_.pinned) != 0;
     }
     [[nodiscard]] double ratio(Edge e) const {
-        return distance(mesh_.position[e.a], mesh_.position[e.b]) / ((size_[e.a] + size_[e.b]) / 2);
+        return distance(mesh_.position[e.a], mesh_.position[e.b]) / size(e);
+    }
+    [[nodiscard]] double size(Edge e) const { return (size_[e.a] + size_[e.b]) / 2; }
+    /// Of the edges at both ends, how long the longest is [m].
+    [[nodiscard]] double longest_at(Edge e) const {
+        double longest = 0;
+        for (Vertex end : {e.a, e.b})
+            for (Vertex v : ring(surface_star(mesh_, end, of_.region)))
+                longest = std::max(longest, distance(mesh_.position[end], mesh_.position[v]));
+        return longest;
     }
     [[nodiscard]] std::vector<Vertex> vertices() const {
         std::vector<Vertex> all;
@@ -141,6 +147,25 @@ private:
         return sum > flat_pair;
     }
 
+    bool adapt_sizes_once() {
+        struct Wrong {
+            double ratio;
+            Edge edge;
+        };
+        std::vector<Wrong> wrong;
+        for (const Edge e : edges_)
+            if (const double r = ratio(e); r < options_.collapse_below || r > options_.split_above) wrong.push_back({r, e});
+        const auto rank = [](double r) { return r > 1 ? 1 + 1 / r : r; };
+        std::ranges::sort(wrong, {}, [&](const Wrong& w) { return std::tuple(rank(w.ratio), w.edge.a, w.edge.b); });
+        bool helped = false;
+        for (const auto& [was, edge] : wrong) {
+            heed(options_.watch);
+            const auto around = surface_shell(mesh_, edge, of_.region);
+            if (!around || ratio(edge) != was) continue;
+            helped |= was < 1 ? collapse(edge, longest_by_size * options_.split_above * size(edge), passable) : split(edge, *around);
+        }
+        return helped;
+    }
     bool try_change(const std::optional<SurfaceChange>& change, Demand demand) {
         if (!change) return false;
         const double most = demand == passable ? std::max(options_.passing, change->worst_before)
@@ -161,18 +186,18 @@ private:
         }
         size_[v] = sum / static_cast<double>(around.size());
     }
-    void split(Edge e, const Shell& around) {
+    bool split(Edge e, const Shell& around) {
         const SurfaceChange change = surface_split(mesh_, around, e);
-        if (change.worst_after > std::max(options_.passing, change.worst_before)) return;
+        if (change.worst_after > std::max(options_.passing, change.worst_before)) return false;
         const Replacement done = carry_out_surface(mesh_, change, changes);
         note(done);
         new_.push_back(done.vertices.front());
         ++changes.splits;
+        return true;
     }
-    bool collapse(Edge e) {
+    bool collapse(Edge e, double longest, Demand demand) {
         if (is_pinned(e.a) || is_pinned(e.b)) return false;
-        const double longest = longest_by_size * options_.split_above * (size_[e.a] + size_[e.b]) / 2;
-        if (!try_change(surface_collapse(mesh_, e, of_, longest), passable)) return false;
+        if (!try_change(surface_collapse(mesh_, e, of_, longest), demand)) return false;
         ++changes.collapses;
         return true;
     }

@@ -17,8 +17,8 @@ Changes adapt_surface(Mesh& mesh, const SurfaceOf& of, std::span<const std::arra
 [[nodiscard]] bool has_wrong_size(const Mesh& mesh, const BodySurface& surface, const Array<Vertex, double>& size,
                                   const AdaptOptions& options);
 
-/// Of cells at the surface that are worse than `good_enough`: swaps, collapses and slides of the surface
-/// that make the worst of those concerned better. For what `improve` has left, and to be followed by it.
+/// Of cells at the surface that are worse than `good_enough`: swaps, slides, collapses and splits of the
+/// surface that make the worst of those concerned better. For what `improve` has left, and to be followed by it.
 Changes improve_surface(Mesh& mesh, const SurfaceOf& of, std::span<const Tet> cells, const AdaptOptions& options);
 
 }  // namespace kropla

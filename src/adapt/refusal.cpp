@@ -4,6 +4,7 @@
 #include "domain/approach.h"
 
 #include <cmath>
+#include <optional>
 
 namespace kropla {
 namespace {
@@ -23,29 +24,46 @@ std::string in_gap(const Domain& domain, const Approach& near, const Trouble& tr
                             : "a smaller one may do");
 }
 
+/// How thick a shape is, or how wide what it leaves open, at its narrowest near a place.
+struct Narrow {
+    double across = infinity;  // [m]
+    bool inside = true;
+    Vec3 at;
+};
+/// Seen from the place, and from the six as far from it as `reach` along the axes. Nothing that is not below `most`.
+std::optional<Narrow> narrowest_near(const Shape& shape, const Vec3& place, double reach, double most) {
+    std::optional<Narrow> found;
+    for (int way = 0; way < 7; ++way) {
+        Vec3 from = place;
+        if (way > 0) from[(way - 1) / 2] += way % 2 == 0 ? reach : -reach;
+        for (const bool inside : {true, false})
+            if (const double across = neck_at(shape, from, inside, most); across < (found ? found->across : most))
+                found = {across, inside, closest_point(shape, from)};
+    }
+    return found;
+}
+
 /// A body that is thinner there than the least size resolves, or leaves open less. Empty where it is not.
 std::string in_thin_place(const Snapshot& at, const Body& body, std::size_t number, const Trouble& trouble) {
     const Shape& shape = at.shapes[number];
-    const double least = least_size(at.size), narrow = least / gap_share;
+    const double least = least_size(at.size);
     if (surface_size(at, number, trouble.place) > least) return "";
-    const double thickness = neck_at(shape, trouble.place, true, narrow), slot = neck_at(shape, trouble.place, false, narrow);
-    const double width = std::min(thickness, slot);
-    if (!(width < narrow)) return "";
-    return named(body) + (thickness <= slot ? " is " + metres(width) + " thick" : " leaves open " + metres(width)) + " at " +
-           place_words(closest_point(shape, trouble.place)) + ", " + written(width / least) + " of size.least = " + metres(least) +
-           ": too thin for the mesh; at most " + metres(rounded_down(gap_share * width)) + " would do";
+    const auto thin = narrowest_near(shape, trouble.place, least, least / gap_share);
+    if (!thin) return "";
+    return named(body) + (thin->inside ? " is " + metres(thin->across) + " thick" : " leaves open " + metres(thin->across)) +
+           " at " + place_words(thin->at) + ", " + written(thin->across / least) + " of size.least = " + metres(least) +
+           ": too thin for the mesh; at most " + metres(rounded_down(gap_share * thin->across)) + " would do";
 }
 
 /// A neck of a body that deforms, or a notch, as narrow as a size or two. Empty where there is none.
 std::string in_neck(const Snapshot& at, const Body& body, std::size_t number, const Trouble& trouble) {
     if (!body.deformation) return in_thin_place(at, body, number, trouble);
     const Shape& shape = at.shapes[number];
-    const double size = surface_size(at, number, trouble.place), narrow = narrow_neck_in_sizes * size;
-    const double neck = neck_at(shape, trouble.place, true, narrow), notch = neck_at(shape, trouble.place, false, narrow);
-    const double width = std::min(neck, notch);
-    if (width > narrow) return "";
-    return named(body) + (neck <= notch ? " has a neck, " : " has a notch, ") + metres(width) + " across, at " +
-           place_words(closest_point(shape, trouble.place)) + ", " + written(width / size) + " of the size = " + metres(size) +
+    const double size = surface_size(at, number, trouble.place);
+    const auto neck = narrowest_near(shape, trouble.place, least_size(at.size), narrow_neck_in_sizes * size);
+    if (!neck) return "";
+    return named(body) + (neck->inside ? " has a neck, " : " has a notch, ") + metres(neck->across) + " across, at " +
+           place_words(neck->at) + ", " + written(neck->across / size) + " of the size = " + metres(size) +
            " of its triangles: too narrow for the mesh; a smaller size may do";
 }
 

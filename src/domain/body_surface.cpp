@@ -105,7 +105,7 @@ std::vector<double> radii_of(const TriangulatedSurface& surface) {
 }
 
 /// Sizes on the surface of a body, of at most `most` [m], that fall in its necks and notches down to `least`, less where it is
-/// flat, as a plate that goes through faces of the box; none where there is none.
+/// flat, as a plate that goes through faces of the box or lies on one; none where there is none.
 LocalSize size_in_necks(const Shape& shape, double least, double most) {
     constexpr double flat = 100;  // [widths] radius of what is
     const TriangulatedSurface& surface = *shape.surface;
@@ -113,10 +113,9 @@ LocalSize size_in_necks(const Shape& shape, double least, double most) {
     std::vector<double> size(surface.points().size());
     for_all(size.size(), [&](std::size_t i) {
         const Vec3& x = surface.points()[i];
-        const Vec3 normal = surface.normal(i);
-        const double neck = surface.width_between(x, normal, true, most / neck_share);
+        const double neck = surface.across(x, true, most / neck_share);
         const double asked = std::min((radii[i] > flat * neck ? gap_share : neck_share) * neck,
-                                      gap_share * surface.width_between(x, normal, false, most / gap_share));
+                                      gap_share * surface.across(x, false, most / gap_share));
         size[i] = std::clamp(asked, least, most);
     });
     if (std::ranges::all_of(size, [&](double s) { return s == most; })) return {};

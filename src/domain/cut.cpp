@@ -122,13 +122,31 @@ private:
     std::map<std::pair<int, int>, int> made_;
 };
 
-/// Where the shape stands.
-Triangles in_place(const Shape& shape, const Bounds& box) {
+/// The surface with its points where `place` has them.
+template <class Place>
+Triangles in_place(const TriangulatedSurface& surface, const Bounds& box, const Place& place) {
     Triangles of;
-    for (const Vec3& x : shape.surface->points()) of.points.push_back(shape.centre + rotated(shape.orientation, x));
-    of.triangles.assign(shape.surface->triangles().begin(), shape.surface->triangles().end());
+    for (const Vec3& x : surface.points()) of.points.push_back(place(x));
+    of.triangles.assign(surface.triangles().begin(), surface.triangles().end());
     for (Vec3& x : of.points) snap(x, box);
     return of;
+}
+
+/// Splits what is on both sides of the box's faces. Is any of it beyond one?
+bool split_at_faces(Triangles& all, const Bounds& box) {
+    const auto is_beyond = [&](int face) {
+        return std::ranges::any_of(all.points, [&](const Vec3& x) {
+            const double away = x[face / 2] - plane_of(box, face);
+            return face % 2 == 0 ? away < 0 : away > 0;
+        });
+    };
+    bool is_cut = false;
+    for (int face = 0; face < box_faces; ++face) {
+        if (!is_beyond(face)) continue;
+        is_cut = true;
+        Splitting(all, box, face).split();
+    }
+    return is_cut;
 }
 
 std::vector<std::array<int, 2>> lines_of(const Triangles& of, const Bounds& box) {
@@ -177,20 +195,8 @@ std::optional<TriangleOnFace> triangle_on_face(const Bounds& box, std::span<cons
 
 Shape cut_by(const Box& box, const Shape& shape) {
     const Bounds within{box.min, box.max};
-    Triangles all = in_place(shape, within);
-    const auto is_beyond = [&](int face) {
-        return std::ranges::any_of(all.points, [&](const Vec3& x) {
-            const double away = x[face / 2] - plane_of(within, face);
-            return face % 2 == 0 ? away < 0 : away > 0;
-        });
-    };
-    bool is_cut = false;
-    for (int face = 0; face < box_faces; ++face) {
-        if (!is_beyond(face)) continue;
-        is_cut = true;
-        Splitting(all, within, face).split();
-    }
-    if (!is_cut) return shape;
+    Triangles all = in_place(*shape.surface, within, [&](const Vec3& x) { return shape.centre + rotated(shape.orientation, x); });
+    if (!split_at_faces(all, within)) return shape;
     if (const auto lies = triangle_on_face(within, all.points, all.triangles))
         throw DomainError("a part of its surface lies in " + wall_name(lies->face) + ", at " +
                           place_words(all.points[as_size(all.triangles[lies->triangle][0])]) +
@@ -224,6 +230,18 @@ Body cut_body(Body body) {
     };
     body.motion = [](double) { return Pose{}; };
     return body;
+}
+
+StandsInBox stands_in_box(const Body& body, double t) {
+    const CutSurface& cut = *body.shape.cut;
+    Triangles all = in_place(cut.whole, cut.box, [&](const Vec3& x) { return body.deformation(x, 0, t); });
+    (void)split_at_faces(all, cut.box);
+    const PartInBox part = part_in(cut.box, all.points, all.triangles);
+    StandsInBox stands{0, !part.triangles.empty()};
+    for (const Vec3& x : part.points)
+        for (int face = 0; face < box_faces; ++face)
+            if (x[face / 2] == plane_of(cut.box, face)) stands.faces |= 1u << face;
+    return stands;
 }
 
 void check_upright(const Body& body, double t) {

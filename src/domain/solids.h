@@ -33,6 +33,14 @@ namespace kropla {
 /// the box, the deformation that is it. Where it reaches through faces, the lines in which it meets them move along these.
 [[nodiscard]] Body cut_body(Body body);
 
+/// Of a cut body as its motion takes it, rigidly: on which faces of the box its surface ends, a bit each; and is anything of
+/// that in the box?
+struct StandsInBox {
+    unsigned faces = 0;
+    bool at_all = false;
+};
+[[nodiscard]] StandsInBox stands_in_box(const Body& body, double t);
+
 /// Throws DomainError if a body goes, from its start to the time `t` [s], through a face on which it does not stand upright:
 /// what is cut off would be another part, with another line. With place, time and what would do.
 void check_upright(const Body& body, double t);

@@ -28,7 +28,7 @@ TriangulatedSurface::Opposite TriangulatedSurface::opposite(const Vec3& from, co
 
 /// Where the way from within the body leaves the box.
 TriangulatedSurface::Opposite TriangulatedSurface::through_face(const Vec3& from, const Vec3& direction) const {
-    Opposite face{std::numeric_limits<double>::infinity(), {}, true};
+    Opposite face;
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0) continue;
         const bool up = direction[axis] > 0;
@@ -42,15 +42,12 @@ TriangulatedSurface::Opposite TriangulatedSurface::through_face(const Vec3& from
 }
 
 double TriangulatedSurface::across(const Vec3& x, bool inside, double most) const {
-    constexpr double least = 1e-3;  // of the most
+    constexpr double facing = 0.5;  // cosine of 60 degrees: a neck need not be seen at its narrowest
     const NearestPlace start = tree_.nearest(x);
-    const Vec3 normal = normalised(outwards(start));
-    const Opposite other = opposite(start.point, inside ? -normal : normal, inside, least * most, most);
-    return other.on_box ? std::numeric_limits<double>::infinity() : other.way;
+    return width_between(start.point, normalised(outwards(start)), inside, most, facing);
 }
 
-double TriangulatedSurface::width_between(const Vec3& x, const Vec3& normal, bool inside, double most) const {
-    constexpr double parallel = 0.94;   // cosine of 20 degrees
+double TriangulatedSurface::width_between(const Vec3& x, const Vec3& normal, bool inside, double most, double parallel) const {
     constexpr double least = 1e-6;      // of the most: near an edge sides are near, too
     constexpr double rounding = 1e-6;
     const Vec3 direction = inside ? -normal : normal;

@@ -29,9 +29,10 @@ struct ThinPlaces::Look {
 
     /// The size there [m].
     double at(const Vec3& x) {
+        constexpr double parallel = 0.94;  // cosine of 20 degrees
         Width narrower = nowhere;
         for (const bool inside : {true, false})
-            if (const double width = surface.width_between(x, normal, inside, most / neck_share); width < narrower.across)
+            if (const double width = surface.width_between(x, normal, inside, most / neck_share, parallel); width < narrower.across)
                 narrower = {width, inside, x};
         const double width = narrower.across;
         if (width < narrowest.across) narrowest = narrower;

@@ -37,15 +37,12 @@ public:
     /// The same of an `x` whose nearest place is known.
     [[nodiscard]] double signed_distance(const Vec3& x, const NearestPlace& nearest) const;
     [[nodiscard]] Vec3 closest_point(const Vec3& x) const { return tree_.nearest(x).point; }
-    /// How far it is from the place nearest to `x`, along the normal there, inwards or outwards, to another part of the
-    /// surface [m], to a hundredth; infinite if not within `most`, and outwards of an open one.
-    [[nodiscard]] double across(const Vec3& x, bool inside, double most) const;
     /// How far it is from `x` in it, along the outward normal there or against it, to another part of the surface that is
-    /// parallel to within 20 degrees, or through the body to such a face of the box [m]; infinite if none is within `most`,
-    /// and outwards of an open one.
-    [[nodiscard]] double width_between(const Vec3& x, const Vec3& normal, bool inside, double most) const;
-    /// Outwards at a point of it, of unit length.
-    [[nodiscard]] Vec3 normal(std::size_t point) const { return normalised(corner_normal_[point]); }
+    /// parallel, its normal against this one by a cosine of at least `parallel`, or through the body to such a face of the
+    /// box [m]; infinite if none is within `most`, and outwards of an open one.
+    [[nodiscard]] double width_between(const Vec3& x, const Vec3& normal, bool inside, double most, double parallel) const;
+    /// The same from the place nearest to `x`, to what is parallel to within 60 degrees.
+    [[nodiscard]] double across(const Vec3& x, bool inside, double most) const;
     /// The radius by which it bends from a triangle to its neighbours [m], over edges that are not `sharp`; infinite if flat.
     [[nodiscard]] double radius_at(std::size_t triangle) const;
     /// The least angle between normals beyond `sharp` at an edge [rad]; infinite if it has no crease.
@@ -76,8 +73,7 @@ private:
     /// What a way along a direction comes to, which is told if it is longer than `least`.
     struct Opposite {
         double way = std::numeric_limits<double>::infinity();  // [m]
-        Vec3 normal;                                            // outwards there
-        bool on_box = false;                                    // a face of the box
+        Vec3 normal;                                           // outwards there
     };
     [[nodiscard]] Opposite opposite(const Vec3& from, const Vec3& direction, bool inside, double least, double most) const;
     [[nodiscard]] bool is_at_edge(const Vec3& middle, const Vec3& normal, const Opposite& other, bool inside, double most) const;

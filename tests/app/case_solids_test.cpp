@@ -245,10 +245,11 @@ TEST(RunSolids, APlateIsHeatedAsABallComesDown) {
     }
 }
 
-/// Before anything is meshed, or with the first mesh.
+/// Before anything is meshed, or with the first mesh. With a prism at hand.
 void expect_run_refused(const std::string& text, const std::string& start) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", text);
+    write(folder.path / "prism.obj", prism(6, 0.7, 0.7));
     const Outcome ended = kropla_program(folder, "run a.toml --out d");
     EXPECT_EQ(ended.code, 2);
     EXPECT_NE(ended.err.find(start), std::string::npos) << ended.err;
@@ -260,6 +261,22 @@ TEST(RunSolids, ThroughAFaceOnlyUpright) {
     const std::string tilts = "min = [-0.5, -0.5, 0]\nmax = [0.5, 0.5, 0.5]\n[body.motion]\nangle = \"40*t\"\naxis = [1, 0, 0]\n";
     expect_run_refused(replaced(pool_case, "min = [-1, -1, 0]\nmax = [1, 1, 0.5]\n", tilts),
                        "body \"pool\": at t = 166.667 ms its motion takes it through the wall z min, on which it does not stand upright at (");
+}
+
+TEST(RunSolids, OtherFacesAreNotReachedNorIsAnyLeft) {
+    constexpr std::string_view block = "[domain]\nmin = [0, 0, 0]\nmax = [5, 5, 5]\n[size]\nsurface = 0.3\nfar = 1\n[time]\nend = 1\nsteps = 6\n"
+                                       "[[body]]\nname = \"s\"\nshape = \"slab\"\nmin = [1, 1, -1]\nmax = [4, 4, 2]\n"
+                                       "[body.motion]\nz = \"4*t\"\n";
+    expect_run_refused(std::string(block), "body \"s\": at t = 750 ms it comes to the wall z max, which it does not reach through "
+                                           "at the start; its motion is to end before");
+    expect_run_refused(replaced(block, "4*t", "-2.5*t"), "body \"s\": at t = 800 ms nothing of its surface is left in the box");
+    constexpr std::string_view as_slab = "shape = \"slab\"\nmin = [1, 1, -1]\nmax = [4, 4, 2]\n";
+    constexpr std::string_view as_ball = "shape = \"sphere\"\ncentre = [2.5, 2.5, 0]\nradius = 1\ncut = true\n";
+    expect_run_refused(replaced(replaced(block, as_slab, as_ball), "z = \"4*t\"", "x = \"2*t\""),
+                       "body \"s\": at t = 750 ms it comes to the wall x max");
+    constexpr std::string_view as_prism = "shape = \"surface\"\nfile = \"prism.obj\"\ncentre = [2.5, 2.5, 0]\ncut = true\n";
+    expect_run_refused(replaced(replaced(block, as_slab, as_prism), "4*t", "2*t"),
+                       "body \"s\": at t = 500.002 ms it leaves the wall z min, which it reaches through at the start");
 }
 
 TEST(RunSolids, ALineWithTooFewEdgesIsNamed) {
