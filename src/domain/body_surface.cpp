@@ -105,17 +105,15 @@ std::vector<double> radii_of(const TriangulatedSurface& surface) {
 }
 
 /// Sizes on the surface of a body, of at most `most` [m], that fall in its necks and notches down to `least`, less where it is
-/// flat, as a plate that goes through faces of the box or lies on one; none where there is none.
+/// flat, as a film or a plate (ThinPlaces); none where there is none.
 LocalSize size_in_necks(const Shape& shape, double least, double most) {
-    constexpr double flat = 100;  // [widths] radius of what is
     const TriangulatedSurface& surface = *shape.surface;
     const std::vector<double> radii = radii_of(surface);
     std::vector<double> size(surface.points().size());
     for_all(size.size(), [&](std::size_t i) {
         const Vec3& x = surface.points()[i];
-        const double neck = surface.across(x, true, most / neck_share);
-        const double asked = std::min((radii[i] > flat * neck ? gap_share : neck_share) * neck,
-                                      gap_share * surface.across(x, false, most / gap_share));
+        const double neck = surface.across(x, true, most / neck_share), notch = surface.across(x, false, most / gap_share);
+        const double asked = std::min(std::clamp(radii[i], neck_share * neck, gap_share * neck), gap_share * notch);
         size[i] = std::clamp(asked, least, most);
     });
     if (std::ranges::all_of(size, [&](double s) { return s == most; })) return {};

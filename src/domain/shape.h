@@ -77,7 +77,7 @@ struct SurfacePlace {
 /// the largest ball that touches there from inside [m].
 [[nodiscard]] double thickness_at(const Shape& shape, const Vec3& x);
 /// How wide a neck of the shape is there, or outwards a notch: along the normal to the other side, or through the shape
-/// to a face of the box, if that is parallel to within 60 degrees [m]. Infinite if not within `most`, and of an ellipsoid.
+/// to a face of the box, if that is parallel to within 40 degrees [m]. Infinite if not within `most`, and of an ellipsoid.
 [[nodiscard]] double neck_at(const Shape& shape, const Vec3& x, bool inside, double most);
 /// The radius of the smallest ball about the centre that holds the shape [m].
 [[nodiscard]] double outer_radius(const Shape& shape);

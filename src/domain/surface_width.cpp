@@ -42,7 +42,7 @@ TriangulatedSurface::Opposite TriangulatedSurface::through_face(const Vec3& from
 }
 
 double TriangulatedSurface::across(const Vec3& x, bool inside, double most) const {
-    constexpr double facing = 0.5;  // cosine of 60 degrees: a neck need not be seen at its narrowest
+    constexpr double facing = 0.77;  // cosine of 40 degrees: a neck need not be seen at its narrowest
     const NearestPlace start = tree_.nearest(x);
     return width_between(start.point, normalised(outwards(start)), inside, most, facing);
 }
@@ -63,7 +63,7 @@ double TriangulatedSurface::width_between(const Vec3& x, const Vec3& normal, boo
 
 /// Do both sides of `middle` meet in an edge not farther than `most`? However sharp it is, smaller triangles are no better.
 bool TriangulatedSurface::is_at_edge(const Vec3& middle, const Vec3& normal, const Opposite& other, bool inside, double most) const {
-    constexpr double almost = 0.9;  // of the way to where it would be: there is room still, if it is no blunt one
+    constexpr double almost = 0.6;  // of the way to where it would be: there is room still, if it is no blunt one, nor very round
     const double tilt = norm(normal + other.normal);
     if (!(other.way < most * tilt)) return false;
     const Vec3 to_edge = (inside ? 1 : -1) / tilt * (normal + other.normal);

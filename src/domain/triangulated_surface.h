@@ -41,7 +41,7 @@ public:
     /// parallel, its normal against this one by a cosine of at least `parallel`, or through the body to such a face of the
     /// box [m]; infinite if none is within `most`, and outwards of an open one.
     [[nodiscard]] double width_between(const Vec3& x, const Vec3& normal, bool inside, double most, double parallel) const;
-    /// The same from the place nearest to `x`, to what is parallel to within 60 degrees.
+    /// The same from the place nearest to `x`, to what is parallel to within 40 degrees.
     [[nodiscard]] double across(const Vec3& x, bool inside, double most) const;
     /// The radius by which it bends from a triangle to its neighbours [m], over edges that are not `sharp`; infinite if flat.
     [[nodiscard]] double radius_at(std::size_t triangle) const;
