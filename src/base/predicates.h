@@ -3,9 +3,18 @@
 #include <kropla/base/vec3.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace kropla {
+
+/// Coordinates from elsewhere as the predicates take them: 0 for what is below 1e-30 in size.
+[[nodiscard]] inline Vec3 without_underflow(Vec3 x) {
+    constexpr double least = 1e-30;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(x[axis]) < least) x[axis] = 0;
+    return x;
+}
 
 /// The sign of det(b-a, c-a, d-a), exact: +1 if the tet (a, b, c, d) is positively oriented, 0 if the four
 /// points are coplanar. Coordinates are finite, and zero or between 1e-50 and 1e50 in size (no under- or

@@ -3,6 +3,7 @@
 
 #include "case/patches.h"
 #include <kropla/base/error.h>
+#include <kropla/base/predicates.h>
 #include <kropla/domain/of_mesh.h>
 #include <kropla/io/fixed_mesh.h>
 #include <kropla/io/mesh_file.h>
@@ -127,8 +128,9 @@ void take_case_mesh(const CaseTable& domain, const CaseMesh& brought, const std:
         region.push_back(body == regions.end() ? surroundings
                                                : region_of_body(static_cast<std::size_t>(body - regions.begin())));
     }
-    const auto mesh = std::make_shared<Mesh>(
-        with_patches(make_mesh(brought.cells.position, brought.cells.tets, std::move(region))));
+    Array<Vertex, Vec3> position;
+    for (const Vec3& x : brought.cells.position) position.push_back(without_underflow(x));
+    const auto mesh = std::make_shared<Mesh>(with_patches(make_mesh(std::move(position), brought.cells.tets, std::move(region))));
     if (std::ranges::find(mesh->region, surroundings) == mesh->region.end())
         domain.refuse("mesh", fmt::format("{}: has no region around the bodies", brought.file));
     const Domain around = domain_of(*mesh, {});

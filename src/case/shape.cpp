@@ -2,6 +2,7 @@
 #include "case/shape.h"
 
 #include <kropla/base/error.h>
+#include <kropla/base/predicates.h>
 #include "domain/triangulated_surface.h"
 #include <kropla/domain/solids.h>
 #include "io/triangles.h"
@@ -79,7 +80,7 @@ Shape read_surface(const CaseTable& table, const Box& box, WrittenBody& written)
     } catch (const FileError& error) {
         table.refuse("file", error.what());
     }
-    for (Vec3& x : found.points) x *= scale;
+    for (Vec3& x : found.points) x = without_underflow(scale * x);
     try {
         Shape shape = shape_within(make_surface(found.points, found.triangles), centre, rotation);
         return cut ? cut_by(box, shape) : shape;

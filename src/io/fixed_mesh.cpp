@@ -1,6 +1,7 @@
 #include <kropla/io/fixed_mesh.h>
 
 #include <kropla/base/error.h>
+#include <kropla/base/predicates.h>
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/topology.h>
 
@@ -45,7 +46,7 @@ FixedMesh fixed_mesh(const FileCells& cells) {
         for (Vertex& v : tet) {
             if (!number[v].exists()) {
                 number[v] = fixed.in_file.push_back(v);
-                position.push_back(cells.position[v]);
+                position.push_back(without_underflow(cells.position[v]));
             }
             v = number[v];
         }

@@ -2,6 +2,7 @@
 #include "case/case.h"
 #include "case/case_text.h"
 #include "app/temporary_folder.h"
+#include "domain/triangulated_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,15 @@ TEST_F(CaseSurface, IsReadScaledTurnedAndPut) {
     const Case again = parse_case(written, "elsewhere/case.toml");
     EXPECT_EQ(to_toml(again), written);
     EXPECT_EQ(again.domain.bodies[0].shape.centre, body.shape.centre);
+}
+
+// The predicates are exact for what does not underflow: the mesher went round and round.
+TEST_F(CaseSurface, WhatIsNextToNothingIsNothing) {
+    const std::string nearly = replaced(replaced(cube, "v 1 0 0", "v 1 1e-320 0"), "v 0 1 1", "v -1e-31 1 1");
+    put("cube.obj", nearly + "f 4 1 5 8\n");
+    const Case given = read("file = \"cube.obj\"\nscale = 0.5\ncentre = [0.3, 0.4, 0.5]");
+    for (const Vec3& x : given.domain.bodies[0].shape.surface->points())
+        for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(x[axis] == 0 || x[axis] == 0.5) << x[axis];
 }
 
 TEST_F(CaseSurface, IsCutByAFace) {
