@@ -183,6 +183,21 @@ std::optional<SizeField> affordable(Case given, SizeLimit& limit, const Watch* w
     return std::nullopt;
 }
 
+/// The layer that makes the triangles under it smallest against what is asked for, if much smaller; empty if none does.
+std::string thin_layer(const Domain& domain) {
+    const Snapshot at = snapshot(domain, 0);
+    std::string thinnest;
+    double least = 0.1;
+    for (std::size_t body = 0; body < domain.bodies.size(); ++body) {
+        const double size = surface_size(at, body), ratio = size / asked_size(domain, body);
+        if (!domain.bodies[body].layer || !(ratio < least)) continue;
+        least = ratio;
+        thinnest = fmt::format(": the layer of {} ends in such thin prisms that triangles there are at most {} large; a larger "
+                               "first_height would do", named(domain.bodies[body]), metres(size));
+    }
+    return thinnest;
+}
+
 /// Throws if the sizes do not fit what limits them, or ask for too many tets. What is advised satisfies both.
 void check_sizes(const Case& given, SizeLimit limit, const Watch* watch) {
     const SizeField& asked = given.domain.size;
@@ -199,6 +214,7 @@ void check_sizes(const Case& given, SizeLimit limit, const Watch* watch) {
     std::string text =
         is_fine ? "size " + too_many(tets) : too_coarse(limit, asked.surface) + ", which " + too_many(tets);
     if (size) text += "; " + in_words(*size, asked.growth);
+    else if (const std::string layer = thin_layer(fitting.domain); !layer.empty()) text += layer;
     else if (std::isfinite(binding.most))
         text += fmt::format(": no one size does, as {} for more than {}", binding.why, metres(binding.most));
     throw DomainError(text + unit_hint(given.domain));

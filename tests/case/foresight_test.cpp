@@ -169,6 +169,12 @@ TEST(Foresight, SaysThatNoOneSizeDoes) {
     }
 }
 
+TEST(Foresight, ALayerTooThinForAnySizeIsNamed) {
+    const std::string said = refusal(replaced(landing(1e-3), "[size]", "[body.layer]\ncount = 3\nfirst_height = 1e-15\n[size]"));
+    EXPECT_NE(said.find("the layer of body \"drop\" ends in such thin prisms that triangles there are at most 2.54e-14 m large"),
+              std::string::npos) << said;
+}
+
 TEST(Foresight, AsksForMixedUnits) {
     const auto hint = [](const std::string& from, const std::string& to) {
         return refusal(replaced(landing(1e-3), from, to));
