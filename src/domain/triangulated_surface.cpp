@@ -224,8 +224,11 @@ void check_crossings(const Draft& d) {
     for (std::size_t t = 0; t < d.triangles.size(); ++t)
         tree.any(boxes[t], [&](std::size_t other) {
             if (other <= t || share_a_corner(d.triangles[t], d.triangles[other])) return false;
-            if (pierce(d.corners(t), d.corners(other)))
-                cuts.add({t, other}, [&] { return "cuts itself: " + triangle_words(d, t) + " and " + triangle_words(d, other); });
+            if (!meet(d.corners(t), d.corners(other))) return false;
+            cuts.add({t, other}, [&] {
+                const char* how = pierce(d.corners(t), d.corners(other)) ? "cuts itself: " : "cuts or touches itself: ";
+                return how + triangle_words(d, t) + " and " + triangle_words(d, other);
+            });
             return false;
         });
     cuts.refuse_any("pairs");

@@ -1,13 +1,10 @@
-// Do surfaces cross? Two triangles that are not in one plane meet, if they do, in a segment that ends at an edge of
-// one of them; so it is enough to ask whether an edge of one meets the other, as in [Guigue, Devillers 2003] "Fast
-// and robust triangle-triangle overlap test using orientation predicates", J. Graphics Tools 8. Within a plane the
-// orientation is asked with the facet's fourth vertex, which is off the plane, so that one predicate does for all.
-// Changed: triangles may share vertices, where they are to have nothing else in common.
+// Do surfaces cross? Triangles that share vertices are to have nothing else in common.
 
 #include "mesh/crossing.h"
 
 #include <kropla/base/predicates.h>
 #include "mesh/box_tree.h"
+#include "mesh/triangle.h"
 #include <kropla/mesh/quality.h>
 
 #include <algorithm>
@@ -19,7 +16,7 @@ namespace {
 /// A facet by its corners' places, and that of its cell's vertex opposite.
 struct Triangle {
     std::array<Vertex, 3> vertices;
-    std::array<Vec3, 3> place;
+    Corners place;
     Vec3 apex;
 };
 
@@ -29,63 +26,11 @@ Triangle triangle_of(const Mesh& mesh, Facet f) {
     return t;
 }
 
-/// As orient3d, at once where the points lie in a plane across an axis.
-int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == x[axis]) return 0;
-    return orient3d(a, b, c, x);
-}
-
-/// Of points in the plane of a triangle; `apex` is off it.
-bool is_inside(const Vec3& x, const Triangle& t) {
-    bool left = false, right = false;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const int s = side(t.place[i], t.place[(i + 1) % 3], x, t.apex);
-        left = left || s > 0;
-        right = right || s < 0;
-    }
-    return !(left && right);
-}
-
-bool ranges_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
-    Extent one, other;
-    one.take_in(p);
-    one.take_in(q);
-    other.take_in(a);
-    other.take_in(b);
-    return one.meets(other);
-}
-
-bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& apex) {
-    const int pa = side(p, q, a, apex), pb = side(p, q, b, apex);
-    if (pa * pb > 0) return false;
-    if (pa == 0 && pb == 0) return ranges_meet(p, q, a, b);  // all on one line
-    return side(a, b, p, apex) * side(a, b, q, apex) <= 0;
-}
-
-bool meets_in_plane(const Vec3& p, const Vec3& q, const Triangle& t) {
-    if (is_inside(p, t) || is_inside(q, t)) return true;
-    for (std::size_t i = 0; i < 3; ++i)
-        if (segments_meet(p, q, t.place[i], t.place[(i + 1) % 3], t.apex)) return true;
-    return false;
-}
-
-/// The segment and the triangle, ends and edges included.
-bool meets(const Vec3& p, const Vec3& q, const Triangle& t) {
-    const auto& [a, b, c] = t.place;
-    const int sp = side(a, b, c, p), sq = side(a, b, c, q);
-    if (sp * sq > 0) return false;
-    if (sp == 0 && sq == 0) return meets_in_plane(p, q, t);
-    if (sp == 0 || sq == 0) return is_inside(sp == 0 ? p : q, t);
-    const int ab = side(p, q, a, b), bc = side(p, q, b, c), ca = side(p, q, c, a);
-    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
-}
-
 bool has(const Triangle& t, Vertex v) { return std::ranges::find(t.vertices, v) != t.vertices.end(); }
 
 bool in_one_plane(const Triangle& s, const Triangle& t) {
     return std::ranges::all_of(
-        t.place, [&](const Vec3& x) { return side(s.place[0], s.place[1], s.place[2], x) == 0; });
+        t.place, [&](const Vec3& x) { return orient3d(s.place[0], s.place[1], s.place[2], x) == 0; });
 }
 
 /// Whether an edge of `s` meets `t`; of its edges at a vertex that both have, only the one opposite is asked.
@@ -93,7 +38,7 @@ bool edge_meets(const Triangle& s, const Triangle& t, bool share_one) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t a = (i + 1) % 3, b = (i + 2) % 3;
         if (share_one && !has(t, s.vertices[i])) continue;
-        if (meets(s.place[a], s.place[b], t)) return true;
+        if (meets(s.place[a], s.place[b], t.place, t.apex)) return true;
     }
     return false;
 }
@@ -107,8 +52,8 @@ bool is_folded(const Triangle& s, const Triangle& t) {
     };
     const std::size_t i = not_in(s, t), j = not_in(t, s);
     const Vec3 &u = s.place[(i + 1) % 3], &v = s.place[(i + 2) % 3];
-    return side(u, v, s.place[i], t.place[j]) == 0 &&
-           side(u, v, s.place[i], s.apex) == side(u, v, t.place[j], s.apex);
+    return orient3d(u, v, s.place[i], t.place[j]) == 0 &&
+           orient3d(u, v, s.place[i], s.apex) == orient3d(u, v, t.place[j], s.apex);
 }
 
 bool cross(const Triangle& s, const Triangle& t) {
@@ -154,10 +99,10 @@ std::vector<Facet> one_of_each_surface(const Mesh& mesh, std::span<const Facet> 
     return firsts;
 }
 
-using Corners = std::array<Vertex, 4>;
+using TetCorners = std::array<Vertex, 4>;
 
 /// Or on a facet: with any corner at `x` the tet is flat, or oriented as it is.
-bool is_within(const Mesh& mesh, const Vec3& x, const Corners& tet) {
+bool is_within(const Mesh& mesh, const Vec3& x, const TetCorners& tet) {
     std::array<Vec3, 4> place;
     for (std::size_t i = 0; i < 4; ++i) place[i] = mesh.position[tet[i]];
     const auto orientation = [](const std::array<Vec3, 4>& p) { return orient3d(p[0], p[1], p[2], p[3]); };
@@ -171,7 +116,7 @@ bool is_within(const Mesh& mesh, const Vec3& x, const Corners& tet) {
 }
 
 /// The prism as three tets. Their diagonals rise towards the column of the higher number, so that those of neighbours meet.
-std::array<Corners, 3> parts_of(const Mesh& mesh, const Prism& prism) {
+std::array<TetCorners, 3> parts_of(const Mesh& mesh, const Prism& prism) {
     const PrismLayer& layer = layer_of(mesh, prism.layer);
     auto columns = layer.triangles[as_size(prism.triangle)];
     std::ranges::sort(columns);
@@ -180,7 +125,7 @@ std::array<Corners, 3> parts_of(const Mesh& mesh, const Prism& prism) {
         low[i] = column_vertex(layer, columns[i], prism.k);
         high[i] = column_vertex(layer, columns[i], prism.k + 1);
     }
-    return {Corners{low[0], low[1], low[2], high[2]}, {low[0], low[1], high[1], high[2]}, {low[0], high[0], high[1], high[2]}};
+    return {TetCorners{low[0], low[1], low[2], high[2]}, {low[0], low[1], high[1], high[2]}, {low[0], high[0], high[1], high[2]}};
 }
 
 /// A cell at each surface, to be asked for by the place of its middle.
@@ -190,7 +135,7 @@ public:
         : mesh_(mesh), facets_(one_of_each_surface(mesh, boundary_facets(mesh))), tree_(middles(mesh, facets_)) {}
 
     /// One other than `self` whose middle is in the tet; none if there is none.
-    [[nodiscard]] Tet any_in(const Corners& tet, Tet self) const {
+    [[nodiscard]] Tet any_in(const TetCorners& tet, Tet self) const {
         Tet found;
         tree_.any(extent_of(mesh_, tet), [&](std::size_t i) {
             const Tet cell = facets_[i].tet;
@@ -240,7 +185,7 @@ std::optional<Buried> find_buried(const Mesh& mesh) {
         if (alive(mesh, t))
             if (const Tet cell = at_surfaces.any_in(mesh.tets[t], t); cell.exists()) return Buried{cell, t};
     for (const Prism& prism : all_prisms(mesh))
-        for (const Corners& part : parts_of(mesh, prism))
+        for (const TetCorners& part : parts_of(mesh, prism))
             if (const Tet cell = at_surfaces.any_in(part, Tet{}); cell.exists()) return Buried{cell, prism};
     return std::nullopt;
 }

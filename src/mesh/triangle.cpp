@@ -1,11 +1,19 @@
 // Distances of triangles. Two triangles that do not pierce each other are nearest at a corner of one, or where an edge
 // of each is nearest to the other [Ericson 2005, "Real-Time Collision Detection", 5.1].
+//
+// Two triangles that are not in one plane meet, if they do, in a segment that ends at an edge of one of them; so it is enough
+// to ask whether an edge of one meets the other, as in [Guigue, Devillers 2003] "Fast and robust triangle-triangle overlap
+// test using orientation predicates", J. Graphics Tools 8. Within a plane the orientation is asked with a point off it, so that
+// one predicate does for all.
 
 #include "mesh/triangle.h"
 
 #include <kropla/base/predicates.h>
 
+#include "mesh/box_tree.h"
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace kropla {
@@ -52,6 +60,67 @@ double between_edges(const Vec3& p, const Vec3& along_p, const Vec3& q, const Ve
     return squared_norm(apart + s * along_p - t * along_q);
 }
 
+/// As orient3d, at once where the points lie in a plane across an axis.
+int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == x[axis]) return 0;
+    return orient3d(a, b, c, x);
+}
+
+/// Of points in the plane of the triangle.
+bool is_inside(const Vec3& x, const Corners& t, const Vec3& apex) {
+    bool left = false, right = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const int s = side(t[i], t[next(i)], x, apex);
+        left = left || s > 0;
+        right = right || s < 0;
+    }
+    return !(left && right);
+}
+
+bool ranges_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+    Extent one, other;
+    one.take_in(p);
+    one.take_in(q);
+    other.take_in(a);
+    other.take_in(b);
+    return one.meets(other);
+}
+
+bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& apex) {
+    const int pa = side(p, q, a, apex), pb = side(p, q, b, apex);
+    if (pa * pb > 0) return false;
+    if (pa == 0 && pb == 0) return ranges_meet(p, q, a, b);  // all on one line
+    return side(a, b, p, apex) * side(a, b, q, apex) <= 0;
+}
+
+bool meets_in_plane(const Vec3& p, const Vec3& q, const Corners& t, const Vec3& apex) {
+    if (is_inside(p, t, apex) || is_inside(q, t, apex)) return true;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (segments_meet(p, q, t[i], t[next(i)], apex)) return true;
+    return false;
+}
+
+/// Off the plane of the triangle, which has an area.
+Vec3 off_plane(const Corners& t) {
+    const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::abs(normal[i]) > std::abs(normal[axis])) axis = i;
+    double largest = 0;
+    for (const Vec3& corner : t) largest = std::max({largest, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
+    Vec3 x = t[0];
+    x[axis] += largest;
+    return x;
+}
+
+bool any_edge_meets(const Corners& edges_of, const Corners& t) {
+    const Vec3 apex = off_plane(t);
+    for (std::size_t i = 0; i < 3; ++i)
+        if (meets(edges_of[i], edges_of[next(i)], t, apex)) return true;
+    return false;
+}
+
 bool may_meet(const Corners& a, const Corners& b) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto [a_min, a_max] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
@@ -79,6 +148,20 @@ OnTriangle closest_on_triangle(const Corners& triangle, const Vec3& x) {
 
 bool pierce(const Corners& a, const Corners& b) {
     return may_meet(a, b) && (any_edge_pierces(a, b) || any_edge_pierces(b, a));
+}
+
+bool meets(const Vec3& p, const Vec3& q, const Corners& t, const Vec3& apex) {
+    const auto& [a, b, c] = t;
+    const int sp = side(a, b, c, p), sq = side(a, b, c, q);
+    if (sp * sq > 0) return false;
+    if (sp == 0 && sq == 0) return meets_in_plane(p, q, t, apex);
+    if (sp == 0 || sq == 0) return is_inside(sp == 0 ? p : q, t, apex);
+    const int ab = side(p, q, a, b), bc = side(p, q, b, c), ca = side(p, q, c, a);
+    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+}
+
+bool meet(const Corners& a, const Corners& b) {
+    return may_meet(a, b) && (any_edge_meets(a, b) || any_edge_meets(b, a));
 }
 
 double squared_distance(const Corners& a, const Corners& b) {

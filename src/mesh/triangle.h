@@ -21,6 +21,10 @@ struct OnTriangle {
 
 /// Does an edge of one go through the inside of the other? Exact; where they only touch, no.
 [[nodiscard]] bool pierce(const Corners& a, const Corners& b);
+/// Have the segment and the triangle a point in common, ends and edges included? Exact. `apex` is any point off its plane.
+[[nodiscard]] bool meets(const Vec3& p, const Vec3& q, const Corners& triangle, const Vec3& apex);
+/// Have the triangles, which have areas? Exact.
+[[nodiscard]] bool meet(const Corners& a, const Corners& b);
 /// The squared distance between two triangles [m^2]; 0 where they pierce each other.
 [[nodiscard]] double squared_distance(const Corners& a, const Corners& b);
 

@@ -223,7 +223,11 @@ TEST(SurfaceShape, RefusesWhatBoundsNothingAndSaysWhere) {
               std::string::npos);
     EXPECT_NE(refusal_of(together(box, turned_round(box_of_triangles({2, 2, 2}, {2.5, 2.5, 2.5})))).find("is inside out"),
               std::string::npos);
-    EXPECT_NE(refusal_of(together(box, box_of_triangles({0.5, 0.5, 0.5}, {2, 2, 2}))).find("cuts itself"), std::string::npos);
+    EXPECT_NE(refusal_of(together(box, box_of_triangles({0.4, 0.5, 0.6}, {2, 2, 2}))).find("cuts itself"), std::string::npos);
+    for (const Triangles& other : {box_of_triangles({0.5, 0.5, 0.5}, {2, 2, 2}),   // edges through the diagonals of sides
+                                   box_of_triangles({1, 0.25, 0.25}, {2, 0.75, 0.75}),  // side on side
+                                   box_of_triangles({1, 1, 0.25}, {2, 2, 0.75})})       // edge on edge
+        EXPECT_NE(refusal_of(together(box, other)).find("cuts or touches itself"), std::string::npos);
     t = together(box, box_of_triangles({1, 1, 1}, {2, 2, 2}));
     for (auto& triangle : t.triangles)
         for (int& corner : triangle)
