@@ -35,8 +35,13 @@ public:
     void adapt_sizes() {
         for (int round = 0; round < most_surface_rounds; ++round)
             if (!adapt_sizes_once()) break;
+        raise_new();
+    }
+    /// The vertices of splits, from the flat edges on which they are to where the surface bends.
+    void raise_new() {
         for (Vertex v : new_)
             if (alive(mesh_, v)) try_change(raise_to_quadric(mesh_, v, of_), passable);
+        new_.clear();
     }
 
     /// From now on, only edges are looked at that have changed, and those around them.
@@ -98,9 +103,7 @@ public:
         for (std::size_t k = 0; k < tet_edges.size(); ++k) {
             const Edge e = tet_edge(mesh_, t, k);
             const auto around = surface_shell(mesh_, e, of_.region);
-            if (!around || !try_change(surface_split(mesh_, *around, e), better)) continue;
-            ++changes.splits;
-            return true;
+            if (around && split(e, *around, better)) return true;
         }
         return false;
     }
@@ -147,6 +150,7 @@ private:
         return sum > flat_pair;
     }
 
+    /// Was any edge brought nearer to its size?
     bool adapt_sizes_once() {
         struct Wrong {
             double ratio;
@@ -162,15 +166,17 @@ private:
             heed(options_.watch);
             const auto around = surface_shell(mesh_, edge, of_.region);
             if (!around || ratio(edge) != was) continue;
-            helped |= was < 1 ? collapse(edge, longest_by_size * options_.split_above * size(edge), passable) : split(edge, *around);
+            const double longest = longest_by_size * options_.split_above * size(edge);
+            helped |= was < 1 ? collapse(edge, longest, passable) : split(edge, *around, passable);
         }
         return helped;
     }
+    [[nodiscard]] bool is_worth(const SurfaceChange& change, Demand demand) const {
+        return change.worst_after <= (demand == passable ? std::max(options_.passing, change.worst_before)
+                                                         : (1 - least_gain) * change.worst_before);
+    }
     bool try_change(const std::optional<SurfaceChange>& change, Demand demand) {
-        if (!change) return false;
-        const double most = demand == passable ? std::max(options_.passing, change->worst_before)
-                                               : (1 - least_gain) * change->worst_before;
-        if (change->worst_after > most) return false;
+        if (!change || !is_worth(*change, demand)) return false;
         note(carry_out_surface(mesh_, *change, changes));
         return true;
     }
@@ -186,9 +192,9 @@ private:
         }
         size_[v] = sum / static_cast<double>(around.size());
     }
-    bool split(Edge e, const Shell& around) {
+    bool split(Edge e, const Shell& around, Demand demand) {
         const SurfaceChange change = surface_split(mesh_, around, e);
-        if (change.worst_after > std::max(options_.passing, change.worst_before)) return false;
+        if (!is_worth(change, demand)) return false;
         const Replacement done = carry_out_surface(mesh_, change, changes);
         note(done);
         new_.push_back(done.vertices.front());
@@ -246,6 +252,7 @@ Changes improve_surface(Mesh& mesh, const SurfaceOf& of, std::span<const Tet> ce
     Surface improved(mesh, of, unused, options);
     for (Tet t : cells)
         if (is_worse(mesh, t, options.good_enough)) (void)improved.help(t);
+    improved.raise_new();
     return improved.changes;
 }
 

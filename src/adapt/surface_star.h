@@ -15,8 +15,8 @@ namespace kropla {
 // What the operators on the surface of a region ask of it at a vertex. The region is a body that deforms; its surface are
 // the facets between its cells and others; on faces of the box it may end, in lines along which its vertices slide.
 
-/// A vertex of the surface, the cells at it on both sides in ascending order, and the sides opposite to it of the triangles around it, each
-/// from its first end to its second counter-clockwise seen from outside; and along which axes the faces of the box on which
+/// A vertex of the surface, the cells at it on both sides in ascending order, and the sides opposite to it of the
+/// triangles around it, each from its first end to its second counter-clockwise seen from outside; and along which axes the faces of the box on which
 /// it lies let it go.
 struct SurfaceStar {
     Vertex vertex;
