@@ -15,6 +15,7 @@
 #include "base/predicates_filter.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace kropla::delaunay {
 
@@ -26,11 +27,13 @@ int side_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }
 
 /// A cell in conflict with `p`: the tet that holds it, or the ghost at the facet where the walk left the
-/// hull.
+/// hull. No cell is met twice [Edelsbrunner 1990, "An acyclicity theorem for cell complexes in d dimension"], unless the
+/// predicates are wrong.
 uint32_t locate(const Kernel& k, const Vec3& p) {
     uint32_t t = k.last;
-    std::size_t entered = 4;
+    std::size_t entered = 4, left = k.cells.size();
     while (!is_ghost(k.cells[t])) {
+        if (left-- == 0) throw std::invalid_argument("coordinates are too small or too large for the predicates (base/predicates.h)");
         const Cell& c = k.cells[t];
         const auto beyond = [&](std::size_t corner) {
             const auto& o = others[corner];

@@ -234,6 +234,25 @@ TEST(Delaunay, TooFewPoints) {
     EXPECT_FALSE(t.same_as[Vertex{0}].exists());
 }
 
+// The predicates are wrong there, and the walk to a point may go round and round.
+TEST(Delaunay, EndsWhereCoordinatesUnderflow) {
+    int refused = 0;
+    for (unsigned drawn = 1; drawn <= 40; ++drawn) {
+        Random random(drawn);
+        std::vector<Vec3> points;
+        for (int i = 0; i < 60; ++i) {
+            Vec3& x = points.emplace_back();
+            for (int axis = 0; axis < 3; ++axis) x[axis] = random.uniform(0, 1) * (random.uniform(0, 1) < 0.5 ? 1e-160 : 1);
+        }
+        try {
+            (void)triangulate(points);
+        } catch (const std::invalid_argument&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 0);
+}
+
 TEST(Delaunay, IsUniqueWhateverTheOrder) {
     for (const Points& points : {random_points(200), grid(5, 1.0), on_sphere(), box_with_faces(50, 20)}) {
         const auto tets = canonical(triangulate(points));
