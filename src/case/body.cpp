@@ -232,11 +232,11 @@ void read_bodies(const CaseTable& file, Case& given) {
         if (table.has("size") && !is_of_place(table, "size")) body.size = table.length("size");
         read_motion(table, given, body, written);
         if (table.has("layer")) body.layer = read_layer(table.table("layer"));
+        if (body.deformation) body = keep_edges(std::move(body));
         if (reached_faces(body.shape) != 0) {
             refuse_with_cut(table, given, body);
             body = cut_body(std::move(body));
         }
-        if (body.deformation) body = keep_edges(std::move(body));
         take_body(given, std::move(body), std::move(written));
     }
     const auto tables = file.tables("body");

@@ -30,7 +30,7 @@ bool has(const Triangle& t, Vertex v) { return std::ranges::find(t.vertices, v) 
 
 bool in_one_plane(const Triangle& s, const Triangle& t) {
     return std::ranges::all_of(
-        t.place, [&](const Vec3& x) { return orient3d(s.place[0], s.place[1], s.place[2], x) == 0; });
+        t.place, [&](const Vec3& x) { return side(s.place[0], s.place[1], s.place[2], x) == 0; });
 }
 
 /// Whether an edge of `s` meets `t`; of its edges at a vertex that both have, only the one opposite is asked.
@@ -52,8 +52,8 @@ bool is_folded(const Triangle& s, const Triangle& t) {
     };
     const std::size_t i = not_in(s, t), j = not_in(t, s);
     const Vec3 &u = s.place[(i + 1) % 3], &v = s.place[(i + 2) % 3];
-    return orient3d(u, v, s.place[i], t.place[j]) == 0 &&
-           orient3d(u, v, s.place[i], s.apex) == orient3d(u, v, t.place[j], s.apex);
+    return side(u, v, s.place[i], t.place[j]) == 0 &&
+           side(u, v, s.place[i], s.apex) == side(u, v, t.place[j], s.apex);
 }
 
 bool cross(const Triangle& s, const Triangle& t) {

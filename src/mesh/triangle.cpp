@@ -60,13 +60,6 @@ double between_edges(const Vec3& p, const Vec3& along_p, const Vec3& q, const Ve
     return squared_norm(apart + s * along_p - t * along_q);
 }
 
-/// As orient3d, at once where the points lie in a plane across an axis.
-int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == x[axis]) return 0;
-    return orient3d(a, b, c, x);
-}
-
 /// Of points in the plane of the triangle.
 bool is_inside(const Vec3& x, const Corners& t, const Vec3& apex) {
     bool left = false, right = false;
@@ -131,6 +124,12 @@ bool may_meet(const Corners& a, const Corners& b) {
 }
 
 }  // namespace
+
+int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == x[axis]) return 0;
+    return orient3d(a, b, c, x);
+}
 
 OnTriangle closest_on_triangle(const Corners& triangle, const Vec3& x) {
     const auto& [a, b, c] = triangle;

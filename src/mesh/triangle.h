@@ -19,6 +19,8 @@ struct OnTriangle {
 /// The point of the triangle, which has an area, nearest to `x`.
 [[nodiscard]] OnTriangle closest_on_triangle(const Corners& triangle, const Vec3& x);
 
+/// As orient3d (base/predicates.h), at once where the points lie in a plane across an axis.
+[[nodiscard]] int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x);
 /// Does an edge of one go through the inside of the other? Exact; where they only touch, no.
 [[nodiscard]] bool pierce(const Corners& a, const Corners& b);
 /// Have the segment and the triangle a point in common, ends and edges included? Exact. `apex` is any point off its plane.
