@@ -70,7 +70,8 @@ std::string brought(double joules, const char* how, const EnergyBalance& energy)
 std::string energy_line(const EnergyBalance& energy) {
     const std::string flows =
         brought(energy.faces, "through faces", energy) + brought(energy.sources, "by sources", energy) +
-        brought(energy.surfaces, "at surfaces of bodies", energy) + brought(energy.held, "by what is held", energy);
+        brought(energy.surfaces, "at surfaces of bodies", energy) + brought(energy.held, "by what is held", energy) +
+        brought(energy.expansion, "as volumes change", energy);
     const double error = std::abs(energy.relative_error());
     const std::string to = error > 0 ? fmt::format("to {:.0e}", error) : "to the last digit";
     return fmt::format("energy: {} stored{}, {} {}", spoken_quantity(energy.end, "J"), flows,

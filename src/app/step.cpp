@@ -4,6 +4,7 @@
 #include "app/flow_fields.h"
 #include "app/liquid_bodies.h"
 #include "app/species_fields.h"
+#include "app/told_flows.h"
 #include "simulate/cells.h"
 #include "simulate/elements.h"
 #include <kropla/simulate/heat.h>
@@ -25,6 +26,12 @@ namespace {
 constexpr double agreed_density = 0.005;  // [-] of it, in the mean: how far it may be behind the temperature, and
 constexpr int most_rounds = 5;           // of flow and heat in turns
 constexpr double rounding = 1e-13;  // [-] of the largest temperature: what a transfer may leave beyond bounds
+
+double largest_size(const Array<Vertex, double>& values) {
+    double largest = 0;
+    for (double value : values) largest = std::max(largest, std::abs(value));
+    return largest;
+}
 
 /// The coldest and hottest vertex of a region.
 struct Extremes {
@@ -127,10 +134,20 @@ private:
     /// After the last transfer.
     void finish_heat(const Advanced& done) {
         const Mesh& mesh = state_.moving.reference();
-        const HeatExtremes& solved = report.heat.extremes;
-        if (!enthalpy_.empty()) temperature_of(mesh, *given_.heat, enthalpy_, temperature(), known_density());
-        else if (!done.transfer.empty() && done.transfer.front().beyond > rounding * std::abs(solved.most.value))
-            keep_within(ranks_, mesh, *given_.heat, solved.least.value, solved.most.value, temperature());
+        const double least = report.heat.extremes.least.value, most = report.heat.extremes.most.value;
+        const auto is_beyond = [&](std::size_t field, double largest) {
+            return field < done.transfer.size() && done.transfer[field].beyond > rounding * largest;
+        };
+        if (enthalpy_.empty()) {
+            if (is_beyond(0, std::abs(most))) keep_within(ranks_, mesh, *given_.heat, least, most, temperature());
+            return;
+        }
+        for (std::size_t r = 0; r < enthalpy_.size(); ++r) {
+            if (!is_beyond(r, largest_size(enthalpy_[r]))) continue;
+            keep_within(ranks_, mesh, *given_.heat, least, most, enthalpy_, known_density());
+            break;
+        }
+        temperature_of(mesh, *given_.heat, enthalpy_, temperature(), known_density());
     }
 
     /// Into the arrays that `fields_` knows.
@@ -173,8 +190,8 @@ private:
                 }
             }
             if (!given_.heat && given_.species.empty()) break;
-            flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::at_rest, materials()), step.dt,
-                                  solved);
+            flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::with_flow, materials()), step.dt,
+                                  solved, told_flows(given_, step.current, step.time, step.time + step.dt));
             if (!given_.heat) break;
             temperature() = begin;
             solve_heat(step);
@@ -277,8 +294,11 @@ private:
     /// The velocities of the surfaces of bodies.
     [[nodiscard]] std::vector<std::function<RigidVelocity(double)>> surface_velocities(double dt) const {
         std::vector<std::function<RigidVelocity(double)>> velocities;
-        for (const Body& body : given_.domain.bodies)
-            velocities.push_back([&body, dt](double t) { return velocity_of(body, t, dt); });
+        for (std::size_t body = 0; body < given_.domain.bodies.size(); ++body) {
+            velocities.emplace_back();  // told_surfaces
+            if (is_told(given_, body)) continue;
+            velocities.back() = [&of = given_.domain.bodies[body], dt](double t) { return velocity_of(of, t, dt); };
+        }
         for (const auto& [body, step] : free_) velocities[body] = [&step = step](double t) { return step.velocity(t); };
         return velocities;
     }
@@ -309,6 +329,7 @@ private:
         }
         FlowOptions options = given_.flow->options;
         options.bodies = surface_velocities(step.dt);
+        options.surfaces = told_surfaces(given_, step.time, step.time + step.dt);
         options.tolerance = free_.empty() ? of_forces : of_motion;
         flow = flow_state(given_, state_.fields);
         solved.density_before = flow.density;
@@ -325,6 +346,8 @@ private:
         solved.velocity = flow.velocity;
         solved.density = flow.density;
         solved.through = report.flow.through;
+        for (std::size_t face = 0; face < solved.open.size(); ++face)
+            solved.open[face] = options.faces[face].kind == FlowFace::Kind::open;
         return Solved{};
     }
 
@@ -350,8 +373,8 @@ private:
         HeatOptions options{.regions = std::vector<HeatRegion>(given_.domain.bodies.size() + 1)};
         for (std::size_t r = 0; r < options.regions.size(); ++r) {
             options.regions[r].name = region_name(given_.domain, r);
-            const bool by_flow = r == 0 || given_.liquid[r - 1] != 0 || rests_on_faces(given_, r - 1);
-            options.regions[r].carried = by_flow ? Carried::at_rest : Carried::with_mesh;
+            const bool rigid = r > 0 && !given_.domain.bodies[r - 1].deformation;
+            options.regions[r].carried = rigid ? Carried::with_mesh : Carried::with_flow;
         }
         return options;
     }
@@ -370,6 +393,14 @@ private:
     std::string unsolved_;  // why the flow could not be solved for, in the last round
     std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor
 };
+
+/// At the step's end [rad/s].
+Vec3 spin_of(const State& state, const Case& given, std::size_t body, const StepReport& report) {
+    const double end = report.mesh.time, dt = report.mesh.dt;
+    if (given.free[body]) return state.free[body].spin;
+    if (is_told(given, body)) return told_spin(given, body, report.bodies[body].place, end - dt, end);
+    return velocity_of(given.domain.bodies[body], end, dt).spin;
+}
 
 /// Not an error: nobody but `take_step_back` hears of it.
 struct TakenBack {};
@@ -395,8 +426,7 @@ StepReport time_step(State& state, const Case& given, const Ranks& ranks, const 
         report.velocities.push_back((report.bodies[body].place - before[body].place) / report.mesh.dt);
     }
     for (std::size_t body = 0; given.flow && body < before.size(); ++body)
-        report.spins.push_back(given.free[body] ? state.free[body].spin
-                                             : velocity_of(given.domain.bodies[body], report.mesh.time, report.mesh.dt).spin);
+        report.spins.push_back(spin_of(state, given, body, report));
     return std::move(report);
 }
 

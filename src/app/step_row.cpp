@@ -86,6 +86,7 @@ void add_energy(const StepReport& report, const HeatOptions& heat, StepRow& row)
     row.insert(row.end(), {{"heat_sources [W]", sum(balance.sources) / dt},
                            {"heat_at_surfaces [W]", sum(balance.surfaces) / dt},
                            {"heat_held [W]", sum(balance.held) / dt},
+                           {"heat_by_volume [W]", sum(balance.expansion) / dt},
                            {"energy_error [J]", balance.error()}});
 }
 

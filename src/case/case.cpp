@@ -187,16 +187,6 @@ toml::table parse(std::string_view text, const std::string& name) {
 
 /// What does not know bodies that deform.
 void refuse_with_deforming(const CaseTable& file, const Case& given) {
-    for (std::size_t body = 0; body < given.domain.bodies.size(); ++body) {
-        const Body& of = given.domain.bodies[body];
-        if (!of.deformation || given.liquid[body] != 0 || rests_on_faces(given, body)) continue;
-        const std::string why =
-            fmt::format("is solved for around bodies that {}", of.shape.cut
-                            ? fmt::format("are wholly in the box, or at rest; {} reaches through faces of it, and moves", named(of))
-                            : fmt::format("move rigidly, or with the flow; {} deforms (motion.kind = \"field\")", named(of)));
-        for (const char* key : {"heat", "species", "flow"})
-            if (file.has(key)) file.refuse(key, why);
-    }
     const auto deforms = std::ranges::find_if(given.domain.bodies, [](const Body& body) { return bool(body.deformation); });
     if (deforms == given.domain.bodies.end()) return;
     const std::string does = deforms->shape.cut ? "reaches through faces of the box" : "deforms";
@@ -219,7 +209,7 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     given.time = read_time(file.table("time"));
     if (file.has("heat")) given.heat = read_heat(file.table("heat"), given.domain, given.written_heat);
     for (std::size_t body = 0; body < given.liquid.size() && given.heat; ++body)
-        if (given.liquid[body] != 0 || rests_on_faces(given, body)) given.heat->regions[body + 1].carried = Carried::at_rest;
+        if (given.domain.bodies[body].deformation) given.heat->regions[body + 1].carried = Carried::with_flow;
     read_species(file, given);
     read_flow(file, given);
     read_contact(file, given);

@@ -143,7 +143,7 @@ HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat&
         const CaseTable region = regions.table(names[r]);
         heat.regions.push_back(read_region(NotedTable(region, probe, written.regions[r])));
         heat.regions[r].name = names[r];
-        heat.regions[r].carried = r == 0 ? Carried::at_rest : Carried::with_mesh;
+        heat.regions[r].carried = r == 0 ? Carried::with_flow : Carried::with_mesh;
     }
 
     heat.surfaces.resize(domain.bodies.size());

@@ -118,7 +118,9 @@ std::optional<EnergyBalance> energy_of(const Table& steps, const std::vector<Fac
     }
     for (const auto& [column, total] : {std::pair{"heat_sources", &balance.sources},
                                         {"heat_at_surfaces", &balance.surfaces},
-                                        {"heat_held", &balance.held}}) {
+                                        {"heat_held", &balance.held},
+                                        {"heat_by_volume", &balance.expansion}}) {
+        if (!has_column(steps, column)) continue;  // of an older run
         const std::vector<double> power = numbers(steps, column);
         *total = integral(power, dt);
         bring(power);

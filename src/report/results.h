@@ -40,10 +40,10 @@ struct FaceResult {
 struct EnergyBalance {
     double start = 0, end = 0;                              // stored
     std::vector<double> stored;                             // after each step
-    double faces = 0, sources = 0, surfaces = 0, held = 0;  // brought in by each
+    double faces = 0, sources = 0, surfaces = 0, held = 0, expansion = 0;  // brought in by each
     double size = 0;  // the largest that was stored at any time or has passed: what an error is compared with
 
-    [[nodiscard]] double brought() const { return faces + sources + surfaces + held; }
+    [[nodiscard]] double brought() const { return faces + sources + surfaces + held + expansion; }
     [[nodiscard]] double error() const { return end - start - brought(); }
     [[nodiscard]] double relative_error() const { return size > 0 ? error() / size : 0; }
 };

@@ -130,6 +130,7 @@ std::string draw_energy(const RunResults& results) {
            row("stored at the start", with_unit(energy.start, "J", digits)) +
            brought("in through faces", energy.faces) + brought("by sources", energy.sources) + brought("at surfaces of bodies", energy.surfaces) +
            brought("to hold regions at their temperature", energy.held) +
+           brought("with material, as volumes change", energy.expansion) +
            row("stored at the end", with_unit(energy.end, "J", digits)) +
            row("error of the balance", error + ", " + share) + "</table>";
 }

@@ -171,6 +171,21 @@ template <std::size_t n, class T>
     return sum;
 }
 
+/// The same with the density at vertices [kg/m^3]: calls `visit(cell, vertex, mass)` with its integral by the shape function [kg].
+template <class Visit>
+void for_each_mass(const Mesh& mesh, const Cells& cells, const Array<Vertex, double>& density, const Visit& visit) {
+    for_each_cell(cells, [&](const auto& cell) {
+        const auto vertices = cell_vertices(mesh, cell);
+        const auto points = cell_points(corners(mesh, cell));
+        const auto thin = at_corners(density, vertices);
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            double mass = 0;
+            for (std::size_t k = 0; k < points.size(); ++k) mass += points[k].volume * mean_product(k, i, thin);
+            visit(cell, vertices[i], mass);
+        }
+    });
+}
+
 /// The mean, for point k, of what has these values at the corners.
 template <std::size_t n, class T>
 [[nodiscard]] T mean_value(std::size_t k, const std::array<T, n>& values) {

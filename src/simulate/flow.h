@@ -45,6 +45,9 @@ namespace kropla {
 /// Velocity per direction at a place [m] and a time [s]; what is empty is zero.
 using VectorQuantity = std::array<Quantity, 3>;
 
+/// A velocity [m/s] at a place [m] and a time [s].
+using VectorField = std::function<Vec3(const Vec3& place, double t)>;
+
 struct FlowRegion {
     Property density = 1;    // [kg/m^3] of the temperature only if nothing else flows
     Property viscosity = 1;  // [Pa s]
@@ -88,6 +91,8 @@ struct FlowOptions {
     // Velocities of regions 1, 2, ...; of those that are empty, or not there: the mesh's, (x1 - x0) / dt, of
     // first order in time where a body accelerates.
     std::vector<std::function<RigidVelocity(double t)>> bodies = {};
+    // Of those that do not move as a whole instead [m/s], at each place of their surfaces.
+    std::vector<VectorField> surfaces = {};
     std::vector<Tension> tension = {};     // of the surfaces of regions 1, 2, ... that are liquid, and
     std::vector<ContactAngles> contact = {};  // of those that reach through faces
     Vec3 gravity = {};                     // [m/s^2]

@@ -119,11 +119,19 @@ void keep_along(const std::array<Vertex, 3>& facet, const Array<Vertex, Vec3>& p
     }
 }
 
+/// The velocity of a body's surface, or nothing: as the mesh moves.
+VectorField velocity_of_surface(const FlowOptions& options, Region body) {
+    if (const auto number = as_size(body.value - 1); number < options.surfaces.size() && options.surfaces[number])
+        return options.surfaces[number];
+    const auto* const motion = motion_of(options, body);
+    if (motion == nullptr) return {};
+    return [motion](const Vec3& place, double t) { return rigid_velocity((*motion)(t), place); };
+}
+
 void fix_solid(const Step& step, const SolidSurface& solid, FlowConditions& conditions) {
-    if (const auto* const motion = motion_of(step.options, solid.body); motion != nullptr) {
+    if (const VectorField given = velocity_of_surface(step.options, solid.body)) {
         const std::string key =
             step.options.key + ".region." + std::to_string(solid.body.value) + ".velocity";
-        const auto given = [&](const Vec3& place, double t) { return rigid_velocity((*motion)(t), place); };
         for (Vertex v : solid.vertices) fix(step, v, given, key, conditions);
         return;
     }
@@ -284,7 +292,13 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
         for (const ContactLine& line : liquid.lines)
             if (!line.cosine && options.faces[line.face].kind == FlowFace::Kind::slip)
                 for (Vertex v : line.vertices) fix(step, v, at_rest, "", conditions);
-    for (const SolidSurface& solid : boundary.solids) fix_solid(step, solid, conditions);
+    Array<Vertex, char> solid_there(count, 0);
+    for (const SolidSurface& solid : boundary.solids) {
+        fix_solid(step, solid, conditions);
+        for (Vertex v : solid.vertices) solid_there[v] = 1;
+    }
+    for (const auto* facets : {&walls, &slipping})  // nothing comes in along with a body that does
+        for (const auto& facet : *facets) keep_along(facet, current.position, solid_there, conditions);
     check_way_out(step, pattern, boundary, conditions);
     return conditions;
 }

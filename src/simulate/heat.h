@@ -45,7 +45,8 @@ namespace kropla {
 // w = 0 but for vertices that were moved inside the body; F_i = 0. Around bodies F_i is not zero, and gas at
 // rest would go through their surface; instead it flows as they push it, u = grad Phi with
 // integral(grad Phi.grad phi_i) = F_i (material_flow.h). The flow's part of C is that same sum over the
-// cells' points and makes up for F_i, exactly.
+// cells' points and makes up for F_i, exactly. Where the volume of a region changes, u has a divergence: material comes, of
+// the enthalpy at the step's begin, or leaves, of that at its end, dt div u of each vertex's share.
 //
 // Where cells are too coarse for the convection, SUPG: the residual without diffusion (linear tets have none,
 // prisms next to none), rho c (dT/dt + v.grad T) - s, is weighted with tau v.grad phi_i, v the mean of u - w
@@ -66,7 +67,7 @@ namespace kropla {
 /// How the material of a region moves.
 enum class Carried {
     with_mesh,  ///< as its interface does: a body, which moves as a whole
-    at_rest,    ///< it rests, but for making way for the bodies that move in it
+    with_flow,  ///< as material_flow has it: at rest but for making way for bodies, or as it is told, or solved for
 };
 
 /// The temperature that a region begins with [K].
@@ -80,7 +81,7 @@ struct HeatStart {
 
 struct HeatRegion {
     HeatMaterial material = {};
-    Carried carried = Carried::at_rest;
+    Carried carried = Carried::with_flow;
     HeatStart initial = 0;
     Quantity source = {};   // [W/m^3]; empty: none
     Quantity power = {};    // [W] if given, `source` is scaled so that this is its integral over the region
@@ -176,6 +177,7 @@ struct HeatBalance {
     std::vector<double> surfaces;      // set free at the surface of body 1, 2, ..., less what it gave away
     std::vector<double> sources;       // in each region
     std::vector<double> held;          // brought to keep each region as it is held
+    std::vector<double> expansion;     // with the material of each region by which its volume changes
 
     [[nodiscard]] double brought() const;
     [[nodiscard]] double error() const { return after - before - brought(); }
@@ -201,7 +203,7 @@ struct HeatReport {
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt);
 
-/// The same in a flow that is known, as `material_flow` gives it for the regions that are `at_rest`. At faces of the box it
+/// The same in a flow that is known, as `material_flow` gives it for the regions that are `with_flow`. At faces of the box it
 /// brings in what is there: the face's value, or else the temperature that the face had at the step's begin. Where the step
 /// is not linear, a guess of the temperature at its end saves passes.
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
@@ -211,16 +213,20 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
 /// The regions whose material moves like that.
 [[nodiscard]] std::vector<Region> regions_that(Carried move, const HeatOptions& options);
 
-/// Brings temperatures that a transfer left beyond `least` and `most` [K] back to them, and what this takes comes from
-/// vertices around (bounded.h): the energy stays. Where enthalpies are proportional. All ranks call it together.
-void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
-                 Array<Vertex, double>& temperature);
-
 /// A region whose density is known at its vertices [kg/m^3] (MaterialFlow): its enthalpy is that times the one per mass.
 struct KnownDensity {
     Region region = {};  // none
     Array<Vertex, double> values = {};
 };
+
+/// Brings temperatures that a transfer left beyond `least` and `most` [K] back to them, and what this takes comes from
+/// vertices around (bounded.h): the energy stays. Where enthalpies are proportional. All ranks call it together.
+void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
+                 Array<Vertex, double>& temperature);
+
+/// The same of enthalpies per volume of each region, back to what they are at `least` and `most` [K].
+void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
+                 std::vector<Array<Vertex, double>>& enthalpies, const KnownDensity& known = {});
 
 /// The energy [J], of all regions or of one: the integral of the enthalpy.
 [[nodiscard]] double energy(const Mesh& mesh, const HeatOptions& options, const Array<Vertex, double>& temperature,

@@ -47,6 +47,22 @@ void add_sources(const HeatStep& step, const HeatConditions& conditions, HeatBal
     });
 }
 
+/// Adds what came and left with the material of regions whose volume changes.
+void add_expansion(const HeatStep& step, const Array<Vertex, double>& solved, HeatBalance& sum) {
+    const MaterialFlow& flow = step.flow;
+    for (Region region : flow.expansion.indices()) {
+        if (!step.steps(region) || !flow.expands(region)) continue;
+        const auto add = [&](const auto&, Vertex v, double share) {
+            const double grown = step.dt * flow.expansion[region][v] * share;
+            const double temperature = grown > 0 ? step.old_temperature[v] : solved[v];
+            sum.expansion[as_size(region.value)] += grown * step.enthalpy[region](temperature);
+        };
+        const Cells cells = living_cells(step.current, region);
+        if (region == flow.by_mass) for_each_mass(step.current, cells, flow.density, add);
+        else for_each_share(step.current, cells, add);
+    }
+}
+
 /// Adds what kept values as they are fixed: what the cells gained there and nothing acting on it brought.
 void add_fixed(const Ranks& ranks, const Mesh& mesh, const std::vector<FixedValue>& fixed, const Assembled& solved,
                const Array<Vertex, double>& acting, HeatBalance& sum) {
@@ -97,7 +113,7 @@ HeatExtremes heat_extremes(const HeatStep& step, const HeatConditions& condition
 
 double HeatBalance::brought() const {
     double sum = std::accumulate(faces.begin(), faces.end(), 0.0);
-    for (const auto* parts : {&surfaces, &sources, &held}) sum = std::accumulate(parts->begin(), parts->end(), sum);
+    for (const auto* parts : {&surfaces, &sources, &held, &expansion}) sum = std::accumulate(parts->begin(), parts->end(), sum);
     return sum;
 }
 
@@ -110,7 +126,9 @@ HeatBalance heat_balance(const Ranks& ranks, const HeatStep& step, const HeatCon
     sum.surfaces.assign(step.options.surfaces.size(), 0.0);
     sum.sources.assign(step.options.regions.size(), 0.0);
     sum.held.assign(step.options.regions.size(), 0.0);
+    sum.expansion.assign(step.options.regions.size(), 0.0);
     const Array<Vertex, double> acting = add_conditions(step, conditions, solved.after, sum);
+    add_expansion(step, solved.after, sum);
     add_sources(step, conditions, sum);
     add_fixed(ranks, step.current, conditions.fixed, solved, acting, sum);
     return sum;

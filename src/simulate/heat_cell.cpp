@@ -26,6 +26,7 @@ struct Cell {
     std::array<Number, n> source;     // [W/m^3]
     std::array<Number, n> potential;  // of the flow [m^2/s]
     Corners<n, Number> velocity;      // of it, besides [m/s]
+    std::array<Number, n> comes, leaves;  // [-] of the volume: material that does as it expands
     Number conductivity;              // [W/(m K)]
     double dt;                        // [s]
     Number density;                   // [kg/m^3] where enthalpies are per mass, the mean of the corners; else one
@@ -47,8 +48,8 @@ const T& by_density(const Cell<n, Four>&, const T& carried) {
 }
 
 bool flows(const HeatStep& step, Region region) {
-    const bool rests = step.options.regions[static_cast<std::size_t>(region.value)].carried == Carried::at_rest;
-    return rests && (!step.flow.potential[region].empty() || !step.flow.velocity.empty());
+    const bool rests = step.options.regions[static_cast<std::size_t>(region.value)].carried == Carried::with_flow;
+    return rests && (!step.flow.potential[region].empty() || !step.flow.velocity_in(region).empty());
 }
 
 template <std::size_t n, class Name>
@@ -70,6 +71,8 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
                  .source = at_corners(step.source[region], v),
                  .potential = at_corners(step.flow.potential[region], v),
                  .velocity = {},
+                 .comes = {},
+                 .leaves = {},
                  .conductivity = conductivity.constant() ? conductivity(0) : mean_of(at_corners(state.conductivity, v)),
                  .dt = step.dt,
                  .density = 1,
@@ -95,7 +98,14 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
         cell.thin = at_corners(step.flow.density, v);
         cell.density = mean_of(cell.thin);
     }
-    if (flowing) cell.velocity = at_corners(step.flow.velocity, v);
+    if (flowing) cell.velocity = at_corners(step.flow.velocity_in(region), v);
+    if (flowing && step.flow.expands(region)) {
+        for (std::size_t i = 0; i < n; ++i) {
+            const double grown = step.dt * step.flow.expansion[region][v[i]];
+            cell.comes[i] = std::max(grown, 0.0);
+            cell.leaves[i] = std::max(-grown, 0.0);
+        }
+    }
     if (!step.low.empty())
         for (Vertex corner : v) cell.low = cell.low || step.low[corner] != 0;
     return cell;
@@ -108,7 +118,8 @@ struct Carrying {
     std::array<Number, n> row_sum = {};
 };
 
-/// What there is, at the step's begin and end. In the matrix the consistent mass and L add up to the lumped one; on the
+/// What there is, at the step's begin and end. Of material that expands more comes, of the enthalpy at the begin, or some leaves,
+/// of that at the end. In the matrix the consistent mass and L add up to the lumped one; on the
 /// old enthalpy they act with the old and the new volume. Of low order, both masses are lumped.
 template <std::size_t n, class Number>
 void add_mass(const Cell<n, Number>& cell, const CellPoints<n, Number>& at_end, Carrying<n, Number>& carrying,
@@ -120,9 +131,9 @@ void add_mass(const Cell<n, Number>& cell, const CellPoints<n, Number>& at_end, 
         for (std::size_t i = 0; i < n; ++i) {
             const Number old_product = cell.low ? means.value[i] * cell.old[i] : mean_product(k, i, cell.old);
             const Number lumped = now * means.value[i];
-            carrying.row_sum[i] += lumped;
+            carrying.row_sum[i] += lumped * (1 + cell.leaves[i]);
             system.held[i] += cell.slope[i] * lumped;
-            system.right[i] += lumped * cell.old[i] - gained * old_product;
+            system.right[i] += lumped * (1 + cell.comes[i]) * cell.old[i] - gained * old_product;
             system.load[i] += cell.dt * lumped * cell.source[i];
         }
     }
@@ -140,8 +151,9 @@ void add_mass_by_density(const Cell<n>& cell, const CellPoints<n>& at_end, Carry
         const double now = at_end[k].volume, before = at_begin[k].volume;
         for (std::size_t i = 0; i < n; ++i) {
             const double lumped = now * mean_product(k, i, cell.thin);
-            carrying.row_sum[i] += lumped;
-            system.held[i] += cell.slope[i] * lumped;
+            carrying.row_sum[i] += lumped * (1 + cell.leaves[i]);
+            system.held[i] += cell.slope[i] * now * means.value[i] * cell.thin[i];  // the column's sum: by rows it is no content
+            system.right[i] += lumped * cell.comes[i] * cell.old[i];
             system.load[i] += cell.dt * now * means.value[i] * cell.source[i];
             for (std::size_t j = 0; j < n; ++j) {
                 const double product = means.product[i][j], rise = cell.old[i] - cell.old[j];
@@ -336,6 +348,8 @@ Cell<4, Four> four_of(const FourTets& cells) {
             .source = together(cells, [](const auto& cell) -> auto& { return cell.source; }),
             .potential = together(cells, [](const auto& cell) -> auto& { return cell.potential; }),
             .velocity = places_together(cells, [](const auto& cell) -> auto& { return cell.velocity; }),
+            .comes = together(cells, [](const auto& cell) -> auto& { return cell.comes; }),
+            .leaves = together(cells, [](const auto& cell) -> auto& { return cell.leaves; }),
             .conductivity = Four(Four::Register{conductivity(0), conductivity(1), conductivity(2), conductivity(3)}),
             .dt = cells[0].dt,
             .density = 1,

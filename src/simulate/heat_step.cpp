@@ -73,6 +73,23 @@ void check_known(const Mesh& mesh, const HeatOptions& options, const HeatConditi
     }
 }
 
+/// Brings values of cells' vertices back to bounds, which are of what they are per `unit(vertex)`; that counts by
+/// `weight(cell, vertex)` times the vertex's share of the cell.
+template <class Weight, class Unit>
+void keep_values(const Ranks& ranks, const Mesh& mesh, const Cells& cells, double least, double most, const Weight& weight,
+                 const Unit& unit, Array<Vertex, double>& kept) {
+    const Pattern pattern = make_pattern(mesh, cells, ranks);
+    const std::vector<Vertex>& vertices = pattern.numbering.vertex;
+    std::vector<double> held(vertices.size(), 0.0), values;
+    for_each_share(mesh, cells, [&](const auto& cell, Vertex v, double volume) {
+        held[as_size(pattern.numbering.row[v])] += weight(cell, v) * volume;
+    });
+    for (Vertex v : vertices) values.push_back(kept[v] / unit(v));
+    (void)repair(ranks, pattern, held, least, 1, values);
+    (void)repair(ranks, pattern, held, most, -1, values);
+    for (std::size_t r = 0; r < values.size(); ++r) kept[vertices[r]] = values[r] * unit(vertices[r]);
+}
+
 void check_step(const Mesh& mesh, const HeatOptions& options, double dt) {
     check_heat(options, mesh);
     if (!(dt > 0)) throw CaseError(options.key + ": the step must be positive, got " + std::to_string(dt) + " s");
@@ -105,7 +122,7 @@ HeatReport step_heat_in(const Ranks& ranks, const Mesh& before, const Mesh& curr
 HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                      NodalField& temperature, double t, double dt) {
     check_step(current, options, dt);
-    const MaterialFlow flow = material_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt);
+    const MaterialFlow flow = material_flow(ranks, before, current, regions_that(Carried::with_flow, options), dt);
     return step_heat_in(ranks, before, current, options, flow, {}, temperature.values, t, dt);
 }
 
@@ -118,18 +135,20 @@ HeatReport step_heat(const Ranks& ranks, const Mesh& before, const Mesh& current
 
 void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
                  Array<Vertex, double>& temperature) {
-    const Cells cells = living_cells(mesh);
-    const Pattern pattern = make_pattern(mesh, cells, ranks);
     const std::vector<double> capacity = capacities(options);
-    std::vector<double> held(pattern.numbering.vertex.size(), 0.0), values;
-    for_each_share(mesh, cells, [&](const auto& cell, Vertex v, double volume) {
-        held[static_cast<std::size_t>(pattern.numbering.row[v])] +=
-            capacity[static_cast<std::size_t>(cell_region(mesh, cell).value)] * volume;
-    });
-    for (Vertex v : pattern.numbering.vertex) values.push_back(temperature[v]);
-    (void)repair(ranks, pattern, held, least, 1, values);
-    (void)repair(ranks, pattern, held, most, -1, values);
-    for (std::size_t r = 0; r < values.size(); ++r) temperature[pattern.numbering.vertex[r]] = values[r];
+    keep_values(ranks, mesh, living_cells(mesh), least, most,
+                [&](const auto& cell, Vertex) { return capacity[as_size(cell_region(mesh, cell).value)]; },
+                [](Vertex) { return 1.0; }, temperature);
+}
+
+void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, double least, double most,
+                 std::vector<Array<Vertex, double>>& enthalpies, const KnownDensity& known) {
+    const Array<Region, Enthalpy> curve = enthalpy_curves(options, known.region);
+    for (Region region : curve.indices()) {
+        const auto density = [&](Vertex v) { return region == known.region ? known.values[v] : 1.0; };
+        keep_values(ranks, mesh, living_cells(mesh, region), curve[region](least), curve[region](most),
+                    [&](const auto&, Vertex v) { return density(v); }, density, enthalpies[as_size(region.value)]);
+    }
 }
 
 void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, NodalField& field) {

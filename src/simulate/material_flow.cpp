@@ -66,6 +66,51 @@ void add_through(const Mesh& mesh, Region region, const Cells& cells, const Arra
     }
 }
 
+/// Of each piece.
+std::vector<double> sums_of(const Pieces& pieces, const Array<Vertex, double>& values) {
+    std::vector<double> sum(as_size(pieces.count), 0.0);
+    for (Vertex v : values.indices())
+        if (pieces.of[v] >= 0) sum[as_size(pieces.of[v])] += values[v];
+    return sum;
+}
+
+/// Takes the sum over each piece out of the source by what passes the open faces that it meets, evenly.
+void let_rest_out(const Mesh& mesh, Region region, const Cells& cells, const Pieces& pieces, const std::array<bool, 6>& open,
+                  Array<Vertex, double>& source, MaterialFlow& flow) {
+    const FaceFacets facets = facets_of_faces(mesh, cells);
+    const std::vector<double> rest = sums_of(pieces, source);
+    std::vector<double> area(rest.size(), 0.0);
+    const auto for_each_corner = [&](const auto& visit) {
+        for (std::size_t face = 0; face < facets.size(); ++face)
+            for (const auto& facet : facets[face])
+                for (Vertex v : facet)
+                    if (open[face]) visit(v, as_size(pieces.of[v]), face, norm(area_vector(mesh, facet)) / 3);
+    };
+    for_each_corner([&](Vertex, std::size_t piece, std::size_t, double share) { area[piece] += share; });
+    for_each_corner([&](Vertex v, std::size_t piece, std::size_t face, double share) {
+        const double rate = -rest[piece] * share / area[piece];
+        flow.through.push_back({v, region, face, rate});
+        source[v] += rate;
+    });
+}
+
+/// The same of a region that is told, by more or less of what passes faces anyway, if that is more than the sum: where the body
+/// is round, its volume and what is seen of it in a face are polygons of their own.
+void let_rest_along(Region region, const Pieces& pieces, Array<Vertex, double>& source, MaterialFlow& flow) {
+    const std::vector<double> rest = sums_of(pieces, source);
+    std::vector<double> passes(rest.size(), 0.0);
+    for (const MaterialFlow::Through& part : flow.through)
+        if (part.region == region) passes[as_size(pieces.of[part.vertex])] += std::abs(part.rate);
+    for (MaterialFlow::Through& part : flow.through) {
+        if (part.region != region) continue;
+        const auto piece = as_size(pieces.of[part.vertex]);
+        if (std::abs(rest[piece]) >= passes[piece]) continue;
+        const double more = -rest[piece] * std::abs(part.rate) / passes[piece];
+        part.rate += more;
+        source[part.vertex] += more;
+    }
+}
+
 /// Takes from `source` the integrals of grad phi_i . velocity over the cells.
 void take_divergence(const Mesh& mesh, const Cells& cells, const Array<Vertex, Vec3>& velocity,
                      Array<Vertex, double>& source) {
@@ -82,16 +127,22 @@ void take_divergence(const Mesh& mesh, const Cells& cells, const Array<Vertex, V
 }
 
 /// Takes the sum over each piece out of `swept`, from each vertex after its share of the volume: else there is no solution.
-void balance(const Pieces& pieces, const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
-    const auto sums = [&](const Array<Vertex, double>& values) {
-        std::vector<double> sum(as_size(pieces.count), 0.0);
-        for (Vertex v : values.indices())
-            if (pieces.of[v] >= 0) sum[as_size(pieces.of[v])] += values[v];
-        return sum;
-    };
-    const std::vector<double> rest = sums(swept), volume = sums(share);
-    for (Vertex v : swept.indices())
-        if (pieces.of[v] >= 0) swept[v] -= rest[as_size(pieces.of[v])] / volume[as_size(pieces.of[v])] * share[v];
+/// Returns what was taken per share.
+Array<Vertex, double> balance(const Pieces& pieces, const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
+    const std::vector<double> rest = sums_of(pieces, swept), volume = sums_of(pieces, share);
+    Array<Vertex, double> taken(swept.size(), 0.0);
+    for (Vertex v : swept.indices()) {
+        if (pieces.of[v] < 0) continue;
+        taken[v] = rest[as_size(pieces.of[v])] / volume[as_size(pieces.of[v])];
+        swept[v] -= taken[v] * share[v];
+    }
+    return taken;
+}
+
+/// Is the volume kept, but for rounding?
+bool is_rounding(const Array<Vertex, double>& expansion, const Array<Vertex, double>& share, double dt) {
+    constexpr double rounding = 1e-13;  // [-] of the volume
+    return std::ranges::all_of(expansion.indices(), [&](Vertex v) { return share[v] == 0 || std::abs(expansion[v]) * dt < rounding; });
 }
 
 /// What a vertex's mass grows by [kg/s], less what the mesh and the velocity bring to it within the region.
@@ -122,8 +173,27 @@ Array<Vertex, double> missing_mass(const Step& step, const Cells& cells, const S
 /// The integrals of phi_i over the cells, of the density at their vertices [kg].
 Array<Vertex, double> shares_of_mass(const Mesh& mesh, const Cells& cells, const Array<Vertex, double>& density) {
     Array<Vertex, double> share(mesh.position.size(), 0.0);
-    for_each_share(mesh, cells, [&](const auto&, Vertex v, double volume) { share[v] += density[v] * volume; });
+    for_each_mass(mesh, cells, density, [&](const auto&, Vertex v, double mass) { share[v] += mass; });
     return share;
+}
+
+/// What the mesh asks for at each vertex of a region, and what passes faces there, less what the velocity has of it. Lists what
+/// passes faces.
+Array<Vertex, double> asked_for(const Step& step, Region region, const Cells& cells, const SolvedFlow& solved, MaterialFlow& flow) {
+    Array<Vertex, double> source;
+    const std::size_t known = flow.through.size();
+    if (region == flow.by_mass) {
+        source = missing_mass(step, cells, solved);
+        for (const FaceMass& part : solved.through) flow.through.push_back({part.vertex, region, part.face, part.rate});
+    } else {
+        source = swept_by_boundary(step, region);
+        if (const Array<Vertex, Vec3>& velocity = flow.velocity_in(region); !velocity.empty()) {
+            add_through(step.current, region, cells, velocity, flow);
+            take_divergence(step.current, cells, velocity, source);
+        }
+    }
+    for (std::size_t k = known; k < flow.through.size(); ++k) source[flow.through[k].vertex] += flow.through[k].rate;
+    return source;
 }
 
 /// The unknowns of a region, among those of all cells: the rows that this rank owns, as many of them as are of the region,
@@ -234,8 +304,16 @@ Array<Vertex, double> at_vertices(const Mesh& mesh, const Part& part, const std:
 }  // namespace
 
 MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& current,
-                           const std::vector<Region>& flowing, double dt, const SolvedFlow& solved) {
-    MaterialFlow flow{Array<Region, Array<Vertex, double>>(count_regions(current)), solved.velocity};
+                           const std::vector<Region>& flowing, double dt, const SolvedFlow& solved,
+                           const std::vector<ToldFlow>& told) {
+    const std::size_t regions = count_regions(current);
+    MaterialFlow flow{Array<Region, Array<Vertex, double>>(regions), solved.velocity, Array<Region, Array<Vertex, Vec3>>(regions),
+                      Array<Region, Array<Vertex, double>>(regions)};
+    Array<Region, const ToldFlow*> said(regions, nullptr);
+    for (const ToldFlow& of : told) {
+        said[of.region] = &of;
+        flow.told[of.region] = of.velocity;
+    }
     const Step step{before, current, dt};
     const SolverChoice choice{.name = "potential flow",
                               .prefix = "potential_",
@@ -249,24 +327,19 @@ MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& c
     }
     for (Region region : flowing) {
         const Cells cells = living_cells(current, region);
-        Array<Vertex, double> source;
-        if (region == flow.by_mass) {
-            source = missing_mass(step, cells, solved);
-            for (const FaceMass& part : solved.through) flow.through.push_back({part.vertex, region, part.face, part.rate});
-        } else {
-            source = swept_by_boundary(step, region);
-            if (!solved.velocity.empty()) {
-                add_through(current, region, cells, solved.velocity, flow);
-                take_divergence(current, cells, solved.velocity, source);
-            }
-        }
-        for (const auto& [v, of, face, rate] : flow.through)
-            if (of == region) source[v] += rate;
-        if (std::ranges::all_of(source, [](double s) { return s == 0; })) continue;
+        Array<Vertex, double> source = asked_for(step, region, cells, solved, flow);
+        const bool expands = said[region] && !said[region]->expansion.empty();
+        if (!expands && std::ranges::all_of(source, [](double s) { return s == 0; })) continue;
+        const Pieces pieces = pieces_of(current, cells);
         const Array<Vertex, double> share = region == flow.by_mass ? shares_of_mass(current, cells, flow.density)
                                                                    : shares_of_volume(current, cells);
-        const Pieces pieces = pieces_of(current, cells);
-        balance(pieces, share, source);
+        const Array<Vertex, double> of_told = expands ? said[region]->expansion : Array<Vertex, double>(share.size(), 0.0);
+        for (Vertex v : source.indices()) source[v] -= of_told[v] * share[v];
+        if (said[region]) let_rest_along(region, pieces, source, flow);
+        else if (region != flow.by_mass) let_rest_out(current, region, cells, pieces, solved.open, source, flow);
+        Array<Vertex, double> expansion = balance(pieces, share, source);
+        for (Vertex v : expansion.indices()) expansion[v] += of_told[v];
+        if (!is_rounding(expansion, share, dt)) flow.expansion[region] = std::move(expansion);
         if (!flow.pattern) flow.pattern = std::make_shared<Pattern>(make_pattern(current, living_cells(current), ranks));
         const Part part = part_of(*flow.pattern, pieces);
         const std::vector<double> matrix =

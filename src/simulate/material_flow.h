@@ -4,6 +4,7 @@
 #include <kropla/simulate/flow.h>
 #include <kropla/simulate/petsc.h>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -18,6 +19,13 @@ struct SolvedFlow {
     // Where the density depends on the temperature: at the step's begin and end [kg/m^3], and what passed the faces.
     Array<Vertex, double> density_before = {}, density = {};
     std::vector<FaceMass> through = {};
+    std::array<bool, 6> open = {};  // faces through which goes what the mesh asks for and the velocity has not: that is of one time
+};
+/// How the material of a region moves, where that is told: a body that deforms as it is told, or comes in through a face.
+struct ToldFlow {
+    Region region;
+    Array<Vertex, Vec3> velocity;         // [m/s] the mean over the step, at the region's vertices
+    Array<Vertex, double> expansion = {};  // [1/s] its divergence; empty: none
 };
 /// How the material of regions that do not go with the mesh flows during a step: u = velocity + grad Phi.
 struct MaterialFlow {
@@ -30,12 +38,22 @@ struct MaterialFlow {
     };
     Array<Region, Array<Vertex, double>> potential;  // Phi [m^2/s]; empty where nothing flows
     Array<Vertex, Vec3> velocity = {};               // [m/s] that was solved for; empty: none
+    Array<Region, Array<Vertex, Vec3>> told = {};      // [m/s] instead of it, in regions that have it
+    /// div u [1/s], where it is not zero: more of the material comes, as it was at the step's begin, or some leaves, as it is.
+    Array<Region, Array<Vertex, double>> expansion = {};
     std::vector<Through> through = {};
     Region by_mass = {};  // whose density depends on the temperature: what is carried there is per mass
     Array<Vertex, double> density_before = {}, density = {};  // of it [kg/m^3], at the step's begin and end
     int iterations = 0;  // of the solver; 0 if nothing had to be solved
     /// Of all cells of the mesh that it was solved on, for what else is solved there; empty if nothing had to be.
     std::shared_ptr<const Pattern> pattern = {};
+
+    [[nodiscard]] bool expands(Region region) const {
+        return as_size(region.value) < expansion.size() && !expansion[region].empty();
+    }
+    [[nodiscard]] const Array<Vertex, Vec3>& velocity_in(Region region) const {
+        return as_size(region.value) < told.size() && !told[region].empty() ? told[region] : velocity;
+    }
 };
 
 /// The least flow of an incompressible gas beside what `solved` has which makes way for bodies during the step
@@ -50,8 +68,12 @@ struct MaterialFlow {
 /// so that F_i is what the surface sweeps, to rounding (see heat.h for what this is good for). A in prisms is
 /// the sum over their points (elements.h), as is what the flow carries; so they agree, to rounding: what is carried by u
 /// is conserved and a constant stays one, though a velocity of finite elements is solenoidal only in the mean. All F_i
-/// of a piece together are the growth of its volume: zero if bodies keep theirs. If not, gas has no way to go;
-/// then the divergence of u is that growth, spread evenly over the piece.
+/// of a piece together are the growth of its volume: zero if bodies keep theirs. If not, the divergence of u is that
+/// growth, spread evenly over the piece: `expansion`, with which a constant stays one all the same. But where the piece meets
+/// open faces, what is left over passes these, evenly.
+///
+/// In the regions of `told`, v is what is told, at faces of the box too, and the divergence of u what is told of it. What is left
+/// over there, as surfaces are of facets, is more or less of what passes faces, or else an even divergence.
 ///
 /// With a density, which the first of `flowing` then has, it is mass that is conserved in it, not volume: there A_ij is of rho grad
 /// phi_i . grad phi_j, and the right side what makes, at each vertex,
@@ -61,6 +83,6 @@ struct MaterialFlow {
 /// on. Throws SolverError if it does not converge.
 [[nodiscard]] MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& current,
                                          const std::vector<Region>& flowing, double dt,
-                                         const SolvedFlow& solved = {});
+                                         const SolvedFlow& solved = {}, const std::vector<ToldFlow>& told = {});
 
 }  // namespace kropla

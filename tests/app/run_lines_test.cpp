@@ -50,11 +50,11 @@ TEST(ClosingLines, TellWhereTheEnergyCameFrom) {
     write_run(folder,
               ",energy_integral [J],energy_before_transfer [J],heat_out_x_min [W],heat_out_x_max [W],"
               "heat_out_y_min [W],heat_out_y_max [W],heat_out_z_min [W],heat_out_z_max [W],heat_sources [W],"
-              "heat_at_surfaces [W],heat_held [W],energy_error [J]",
-              ",63.25,63.25,-8,0,0,0,0,0,2,-1,0,0");
+              "heat_at_surfaces [W],heat_held [W],heat_by_volume [W],energy_error [J]",
+              ",63.25,63.25,-8,0,0,0,0,0,2,-1,0,1,0");
     EXPECT_EQ(closing_lines(folder.path, 1)[1],
               "energy: 63.2 J stored, 2 J in through faces, 500 mJ in by sources, 250 mJ out at surfaces of bodies, "
-              "balanced to the last digit");
+              "250 mJ in as volumes change, balanced to the last digit");
 }
 
 }  // namespace

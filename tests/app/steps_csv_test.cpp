@@ -44,7 +44,7 @@ TEST(StepRow, HasTheColumnsThatReadersKnow) {
                                "energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited [K],"
                                "energy_beyond_bounds [K],heat_out_x_min [W],heat_out_x_max [W],heat_out_y_min [W],"
                                "heat_out_y_max [W],heat_out_z_min [W],heat_out_z_max [W],heat_sources [W],"
-                               "heat_at_surfaces [W],heat_held [W],energy_error [J]"));
+                               "heat_at_surfaces [W],heat_held [W],heat_by_volume [W],energy_error [J]"));
 }
 
 TEST(StepRow, HasTheFiguresOfTheStep) {
@@ -63,6 +63,7 @@ TEST(StepRow, HasTheFiguresOfTheStep) {
     report.heat.balance.after = 4;
     report.heat.balance.faces = {0, 0, 0, 0, 0, 2};
     report.heat.balance.sources = {0.25, 0.5};
+    report.heat.balance.expansion = {0, 0.125};
     report.bodies = {{.place = {1, 2, 3}, .mean = 300}};
     report.velocities = {{4, 5, 6}};
     const StepRow row = step_row(3, report, {}, {.tets = 8, .worst = {}}, given);
@@ -77,7 +78,7 @@ TEST(StepRow, HasTheFiguresOfTheStep) {
     EXPECT_EQ(value("v_b [m/s]"), 5);
     EXPECT_EQ(value("temperature_mean_b [K]"), 300);
     EXPECT_EQ(value("heat_from_b [W]"), -7);
-    EXPECT_TRUE(csv_line(row).ends_with(",-5,0.2,4,6,7,0,0,0,0,0,-4,1.5,0,0,0.25")) << csv_line(row);
+    EXPECT_TRUE(csv_line(row).ends_with(",-5,0.2,4,6,7,0,0,0,0,0,-4,1.5,0,0,0.25,0.125")) << csv_line(row);
 }
 
 TEST(StepsTable, KeepsEveryBitOfANumber) {

@@ -80,7 +80,7 @@ TEST(ReadCase, EveryKeyArrives) {
     EXPECT_EQ(given.quality.max_aspect_ratio, 9.5);
     EXPECT_EQ(given.time.steps, 40);
     ASSERT_TRUE(given.heat);
-    EXPECT_EQ(given.heat->regions[0].carried, Carried::at_rest);
+    EXPECT_EQ(given.heat->regions[0].carried, Carried::with_flow);
     EXPECT_EQ(given.heat->regions[1].carried, Carried::with_mesh);
     EXPECT_EQ(given.heat->regions[1].source({1e-3, 0.5, 0.25}, 2), 1e6 * 1e-3 * 2 + 0.5 - 0.25);
     EXPECT_FALSE(given.heat->regions[2].source);

@@ -14,9 +14,9 @@ constexpr const char* steps_text =
     "temperature_min_a [K],temperature_mean_a [K],temperature_max_a [K],heat_from_a [W],"
     "energy_integral [J],energy_transfer_error,energy_before_transfer [J],energy_limited [K],energy_beyond_bounds [K],"
     "heat_out_x_min [W],heat_out_x_max [W],heat_out_y_min [W],heat_out_y_max [W],heat_out_z_min [W],"
-    "heat_out_z_max [W],heat_sources [W],heat_at_surfaces [W],heat_held [W],energy_error [J]\n"
-    "1,2,2,0,0,4,0,0,-0.5,8,24,380,390,395,7,105,0,105,0,0,0,0,0,0,0.5,0,3,0,0,0\n"
-    "2,3,1,1e-16,0,3,1e-16,0,-1,8,24,360,370,394,-9,107.5,0,107.5,0,0,0,0,0,0,0.5,0,3,0,0,0\n";
+    "heat_out_z_max [W],heat_sources [W],heat_at_surfaces [W],heat_held [W],heat_by_volume [W],energy_error [J]\n"
+    "1,2,2,0,0,4,0,0,-0.5,8,24,380,390,395,7,105,0,105,0,0,0,0,0,0,0.5,0,3,0,0,0,0\n"
+    "2,3,1,1e-16,0,3,1e-16,0,-1,8,24,360,370,394,-9,107.5,0,107.5,0,0,0,0,0,0,0.5,0,3,0,0,0,0\n";
 constexpr const char* bodies_text =
     "body,name,x [m],y [m],z [m],temperature_min [K],temperature_mean [K],temperature_max [K]\n1,a,0,0,5,400,400,400\n";
 

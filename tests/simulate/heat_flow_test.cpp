@@ -44,7 +44,7 @@ HeatOptions gas_and_body() {
 HeatReport step(const Mesh& before, const Mesh& current, const HeatOptions& options, NodalField& field, double dt) {
     const Ranks ranks = petsc().all_ranks();
     const MaterialFlow flow =
-        material_flow(ranks, before, current, regions_that(Carried::at_rest, options), dt, {.velocity = shear(current)});
+        material_flow(ranks, before, current, regions_that(Carried::with_flow, options), dt, {.velocity = shear(current)});
     return step_heat(ranks, before, current, options, flow, field, 0, dt);
 }
 

@@ -86,7 +86,7 @@ Mesh position_of_step(const Mesh& start, const Motion& motion, int step) {
 HeatOptions droplet_in_gas() {
     HeatOptions options{.regions = std::vector<HeatRegion>(2)};
     options.regions[0] = {.material = {.conductivity = 60, .density = 1.6, .specific_heat = 520},
-                          .carried = Carried::at_rest, .initial = 300};
+                          .carried = Carried::with_flow, .initial = 300};
     options.regions[1] = {.material = {.conductivity = 3e4, .density = 7000, .specific_heat = 800},
                           .carried = Carried::with_mesh, .initial = 2500};
     return options;

@@ -44,7 +44,7 @@ HeatMaterial in_units(const HeatMaterial& m, const Units& units) {
 
 HeatOptions hot_body(const HeatMaterial& gas, const HeatMaterial& body) {
     HeatOptions options{.regions = std::vector<HeatRegion>(2)};
-    options.regions[0] = {.material = gas, .carried = Carried::at_rest, .initial = 300};
+    options.regions[0] = {.material = gas, .carried = Carried::with_flow, .initial = 300};
     options.regions[1] = {.material = body, .carried = Carried::with_mesh, .initial = 2500};
     return options;
 }
