@@ -25,12 +25,26 @@ namespace {
 
 constexpr double agreed_density = 0.005;  // [-] of it, in the mean: how far it may be behind the temperature, and
 constexpr int most_rounds = 5;           // of flow and heat in turns
-constexpr double rounding = 1e-13;  // [-] of the largest temperature: what a transfer may leave beyond bounds
 
-double largest_size(const Array<Vertex, double>& values) {
-    double largest = 0;
-    for (double value : values) largest = std::max(largest, std::abs(value));
-    return largest;
+/// The least and the most of a field.
+struct Span {
+    double least = INFINITY, most = -INFINITY;
+
+    /// Is the other one within it, but for rounding?
+    [[nodiscard]] bool holds(const Span& other) const {
+        constexpr double rounding = 1e-13;  // [-] of the largest value: what a transfer may leave beyond bounds
+        const double margin = rounding * std::max(std::abs(least), std::abs(most));
+        return other.least >= least - margin && other.most <= most + margin;
+    }
+};
+/// In a region, or everywhere.
+Span span_of(const Mesh& mesh, const Array<Vertex, double>& values, Region region = {}) {
+    Span span;
+    for (Vertex v : vertices_of(mesh, living_cells(mesh, region))) {
+        span.least = std::min(span.least, values[v]);
+        span.most = std::max(span.most, values[v]);
+    }
+    return span;
 }
 
 /// The coldest and hottest vertex of a region.
@@ -67,9 +81,10 @@ std::vector<StepWarning> beyond_tables(const HeatOptions& heat, const Mesh& mesh
                                                      "{:.6g} K: the value at the end of the table holds there", key, word,
                                                      end, x.x, x.y, x.z, t, temperature[v])});
             };
-            if (temperature[extremes.hottest] > property->temperatures().back())
+            constexpr double rounding = 1e-12;  // [-]
+            if (temperature[extremes.hottest] > property->temperatures().back() * (1 + rounding))
                 say(extremes.hottest, property->temperatures().back(), "ends");
-            else if (temperature[extremes.coldest] < property->temperatures().front())
+            else if (temperature[extremes.coldest] < property->temperatures().front() * (1 - rounding))
                 say(extremes.coldest, property->temperatures().front(), "begins");
         }
     }
@@ -103,6 +118,8 @@ public:
     }
 
     Advanced advance(const StepOptions& options, std::function<void(const Mesh&)> last_look = {}) {
+        if (given_.heat) at_begin_ = span_of(state_.moving.reference(), temperature());
+        species_at_begin_ = spans_of_species(state_.moving.reference());
         AdvanceOptions how{.least_dt = options.least_dt, .last_look = std::move(last_look), .watch = ranks_.watch};
         if (given_.heat) how.contents = {[&](const Mesh& mesh) { return energy_on(mesh); }};
         for (std::size_t s = 0; s < given_.species.size(); ++s)
@@ -121,7 +138,9 @@ public:
                 throw StuckError(std::string(stuck.what()) + "; with a table [contact] bodies may touch", stuck.place);
             }
         }();
-        if (given_.heat) finish_heat(done);
+        if (given_.heat)
+            take_transferred(state_.moving.reference(), {report.heat.extremes.least.value, report.heat.extremes.most.value});
+        take_transferred_species(state_.moving.reference(), species_solved_);
         for (const auto& [body, step] : free_) state_.free[body] = step.end();
         if (contacts_) report.contact = contacts_->report();
         return done;
@@ -131,23 +150,32 @@ public:
 
 private:
     [[nodiscard]] Array<Vertex, double>& temperature() { return state_.fields.front().values; }
-    /// After the last transfer.
-    void finish_heat(const Advanced& done) {
-        const Mesh& mesh = state_.moving.reference();
-        const double least = report.heat.extremes.least.value, most = report.heat.extremes.most.value;
-        const auto is_beyond = [&](std::size_t field, double largest) {
-            return field < done.transfer.size() && done.transfer[field].beyond > rounding * largest;
+    /// After a transfer, which may leave temperatures beyond all that there were.
+    void take_transferred(const Mesh& mesh, const Span& bounds) {
+        const auto take_temperatures = [&] {
+            if (!enthalpy_.empty()) temperature_of(mesh, *given_.heat, enthalpy_, temperature(), known_density());
         };
-        if (enthalpy_.empty()) {
-            if (is_beyond(0, std::abs(most))) keep_within(ranks_, mesh, *given_.heat, least, most, temperature());
-            return;
-        }
-        for (std::size_t r = 0; r < enthalpy_.size(); ++r) {
-            if (!is_beyond(r, largest_size(enthalpy_[r]))) continue;
-            keep_within(ranks_, mesh, *given_.heat, least, most, enthalpy_, known_density());
-            break;
-        }
-        temperature_of(mesh, *given_.heat, enthalpy_, temperature(), known_density());
+        take_temperatures();
+        if (bounds.holds(span_of(mesh, temperature()))) return;
+        if (enthalpy_.empty()) keep_within(ranks_, mesh, *given_.heat, bounds.least, bounds.most, temperature());
+        else keep_within(ranks_, mesh, *given_.heat, bounds.least, bounds.most, enthalpy_, known_density());
+        take_temperatures();
+    }
+
+    /// The spans of all species in their regions.
+    [[nodiscard]] std::vector<Span> spans_of_species(const Mesh& mesh) const {
+        std::vector<Span> spans;
+        for (const SpeciesField& field : species_fields(given_))
+            spans.push_back(span_of(mesh, state_.fields[field.place].values, Region(field.region)));
+        return spans;
+    }
+    void take_transferred_species(const Mesh& mesh, const std::vector<Span>& bounds) {
+        const std::vector<Span> there = spans_of_species(mesh);
+        const std::vector<SpeciesField> fields = species_fields(given_);
+        for (std::size_t k = 0; k < fields.size(); ++k)
+            if (!bounds[k].holds(there[k]))
+                keep_within(ranks_, mesh, Region(fields[k].region), bounds[k].least, bounds[k].most,
+                            state_.fields[fields[k].place].values);
     }
 
     /// Into the arrays that `fields_` knows.
@@ -175,10 +203,13 @@ private:
 
     Answer solve(const StepToSolve& step) {
         unsolved_.clear();
-        if (!enthalpy_.empty()) temperature_of(step.before, *given_.heat, enthalpy_, temperature(), known_density());
+        if (given_.heat) take_transferred(step.before, at_begin_);
         const Array<Vertex, double> begin = given_.heat ? temperature() : Array<Vertex, double>{};
         FlowState flow;
         expect(step, begin);
+        const bool carries = given_.heat || !given_.species.empty();
+        const std::vector<ToldFlow> told =
+            carries ? told_flows(given_, step.current, step.time, step.time + step.dt) : std::vector<ToldFlow>{};
         const bool in_turns = expands(given_) && step.round == 1;  // first what the gas does, then where bodies go in it
         for (int round = 1;; ++round) {
             SolvedFlow solved;
@@ -189,9 +220,9 @@ private:
                     if (!liquids_agree(step, flow, rigid) || !rigid) return BodiesMoved{places(), courses()};
                 }
             }
-            if (!given_.heat && given_.species.empty()) break;
+            if (!carries) break;
             flow_ = material_flow(ranks_, step.before, step.current, regions_that(Carried::with_flow, materials()), step.dt,
-                                  solved, told_flows(given_, step.current, step.time, step.time + step.dt));
+                                  solved, told);
             if (!given_.heat) break;
             temperature() = begin;
             solve_heat(step);
@@ -202,7 +233,9 @@ private:
         if (liquids_) keep_flow_rate(given_, rate_over(step, flow), state_.fields);
         if (given_.flow) keep_flow(given_, flow, state_.fields);
         if (!enthalpy_.empty()) take_enthalpies(step.current);
+        take_transferred_species(step.before, species_at_begin_);
         for (std::size_t s = 0; s < given_.species.size(); ++s) solve_species(step, s);
+        species_solved_ = spans_of_species(step.current);
         return Solved{};
     }
 
@@ -373,8 +406,7 @@ private:
         HeatOptions options{.regions = std::vector<HeatRegion>(given_.domain.bodies.size() + 1)};
         for (std::size_t r = 0; r < options.regions.size(); ++r) {
             options.regions[r].name = region_name(given_.domain, r);
-            const bool rigid = r > 0 && !given_.domain.bodies[r - 1].deformation;
-            options.regions[r].carried = rigid ? Carried::with_mesh : Carried::with_flow;
+            options.regions[r].carried = carried_in(given_.domain, r);
         }
         return options;
     }
@@ -390,6 +422,8 @@ private:
     std::optional<LiquidStep> liquids_;  // bodies that go with the flow, likewise
     std::optional<FlowState> settled_;   // what the flow is, if only the mesh has to follow it still
     std::optional<Contacts> contacts_;  // likewise, what they do to each other
+    Span at_begin_;         // of the temperature, and of species
+    std::vector<Span> species_at_begin_, species_solved_;
     std::string unsolved_;  // why the flow could not be solved for, in the last round
     std::vector<Array<Vertex, double>> enthalpy_;  // of each region, where a temperature does not tell the energy by a factor
 };

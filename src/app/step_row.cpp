@@ -119,12 +119,17 @@ void add_species(const StepReport& report, const Case& given, StepRow& row) {
         const std::string& name = given.species[s].name;
         const std::size_t place = s + (given.heat ? 1 : 0);
         const ContentReport amount = place < report.mesh.contents.size() ? report.mesh.contents[place] : ContentReport{};
-        double error = 0;
-        if (s < report.species.size())
-            for (const HeatBalance& balance : report.species[s].balance) error += balance.error();
+        double error = 0, by_volume = 0;
+        if (s < report.species.size()) {
+            for (const HeatBalance& balance : report.species[s].balance) {
+                error += balance.error();
+                by_volume += sum(balance.expansion);
+            }
+        }
         row.insert(row.end(), {{fmt::format("{}_integral [kg]", name), amount.after},
                                {fmt::format("{}_transfer_error", name),
                                 amount.after != 0 ? amount.by_transfer / std::abs(amount.after) : 0},
+                               {fmt::format("{}_by_volume [kg]", name), by_volume},
                                {fmt::format("{}_error [kg]", name), error}});
     }
 }

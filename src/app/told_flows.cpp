@@ -3,21 +3,8 @@
 #include "base/for_all.h"
 #include "simulate/cells.h"
 
-#include <algorithm>
-
 namespace kropla {
 namespace {
-
-std::vector<Vertex> vertices_of(const Mesh& mesh, Region region) {
-    std::vector<Vertex> vertices;
-    for_each_cell(living_cells(mesh, region), [&](const auto& cell) {
-        const auto of = cell_vertices(mesh, cell);
-        vertices.insert(vertices.end(), of.begin(), of.end());
-    });
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-}
 
 /// The derivatives along x, y and z of what is of a place, by central differences.
 template <class Of>
@@ -57,14 +44,14 @@ std::vector<ToldFlow> told_flows(const Case& given, const Mesh& current, double 
         if (!is_told(given, body)) continue;
         const Deformation& deformation = given.domain.bodies[body].deformation;
         const bool may_expand = !given.written_bodies[body].velocity.empty();  // paths are rigid
-        const std::vector<Vertex> vertices = vertices_of(current, region_of_body(body));
-        ToldFlow& flow = flows.emplace_back(ToldFlow{region_of_body(body), Array<Vertex, Vec3>(current.position.size())});
+        const std::vector<Vertex> vertices = vertices_of(current, living_cells(current, region_of_body(body)));
+        ToldFlow& flow = flows.emplace_back(region_of_body(body), Array<Vertex, Vec3>(current.position.size()));
         if (may_expand) flow.expansion.resize(current.position.size(), 0.0);
         for_all(vertices.size(), [&](std::size_t k) {
             const Vec3& x = current.position[vertices[k]];
             flow.velocity[vertices[k]] = (x - deformation(x, t1, t0)) / (t1 - t0);
             if (may_expand)
-                flow.expansion[vertices[k]] = grown(deformation, x, t0, t1, given.domain.size.surface) / (t1 - t0);
+                flow.expansion[vertices[k]] = grown(deformation, x, t0, t1, asked_size(given.domain, body)) / (t1 - t0);
         });
     }
     return flows;
@@ -84,7 +71,7 @@ std::vector<VectorField> told_surfaces(const Case& given, double t0, double t1) 
 Vec3 told_spin(const Case& given, std::size_t body, const Vec3& centre, double t0, double t1) {
     const Deformation& deformation = given.domain.bodies[body].deformation;
     const auto slope = slopes([&](const Vec3& x) { return velocity_at(deformation, x, t1, t0, t1); }, centre,
-                              given.domain.size.surface);
+                              asked_size(given.domain, body));
     return 0.5 * Vec3{slope[1].z - slope[2].y, slope[2].x - slope[0].z, slope[0].y - slope[1].x};
 }
 

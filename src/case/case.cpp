@@ -208,8 +208,6 @@ Case parse_case(std::string_view text, const std::string& name, std::span<const 
     if (file.has("quality")) given.quality = read_quality(file.table("quality"));
     given.time = read_time(file.table("time"));
     if (file.has("heat")) given.heat = read_heat(file.table("heat"), given.domain, given.written_heat);
-    for (std::size_t body = 0; body < given.liquid.size() && given.heat; ++body)
-        if (given.domain.bodies[body].deformation) given.heat->regions[body + 1].carried = Carried::with_flow;
     read_species(file, given);
     read_flow(file, given);
     read_contact(file, given);

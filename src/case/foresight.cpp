@@ -239,14 +239,14 @@ std::string doubt(const Case& given, const Approach& gap, double in_sizes) {
 
 /// What becomes of a cut body at a time that its mesh cannot follow; empty if nothing. A slab or a cylinder goes on behind the
 /// faces that it reaches through, so it does not leave them.
-std::string gone_wrong(const Case& given, std::size_t body, unsigned faces, double t) {
+std::string gone_wrong(const Case& given, std::size_t body, const StandsInBox& start, double t) {
     const std::string& shape = given.written_bodies[body].shape;
     const StandsInBox stands = stands_in_box(given.domain.bodies[body], t);
     if (!stands.at_all) return "nothing of its surface is left in the box";
     for (int face = 0; face < box_faces; ++face) {
-        if (reaches(stands.faces, face) && !reaches(faces, face))
+        if (reaches(stands.faces, face) && !reaches(start.faces | start.beyond, face))
             return fmt::format("it comes to {}, which it does not reach through at the start", wall_name(face));
-        if (!reaches(stands.faces, face) && reaches(faces, face) && shape != "slab" && shape != "cylinder")
+        if (!reaches(stands.faces, face) && reaches(start.faces, face) && shape != "slab" && shape != "cylinder")
             return fmt::format("it leaves {}, which it reaches through at the start", wall_name(face));
     }
     return "";
@@ -256,15 +256,15 @@ std::string gone_wrong(const Case& given, std::size_t body, unsigned faces, doub
 /// at a hundred times.
 void check_faces_reached(const Case& given, std::size_t body, const Watch* watch) {
     constexpr int looks = 100, halvings = 12;
-    const unsigned faces = stands_in_box(given.domain.bodies[body], 0).faces;
+    const StandsInBox start = stands_in_box(given.domain.bodies[body], 0);
     for (int look = 1; look <= looks; ++look) {
         heed(watch);
         double right = given.time.end * (look - 1) / looks, wrong = given.time.end * look / looks;
-        std::string what = gone_wrong(given, body, faces, wrong);
+        std::string what = gone_wrong(given, body, start, wrong);
         if (what.empty()) continue;
         for (int halving = 0; halving < halvings; ++halving) {
             const double middle = (right + wrong) / 2;
-            const std::string then = gone_wrong(given, body, faces, middle);
+            const std::string then = gone_wrong(given, body, start, middle);
             (then.empty() ? right : wrong) = middle;
             if (!then.empty()) what = then;
         }

@@ -129,6 +129,10 @@ std::string region_name(const Domain& domain, std::size_t region) {
     return region == 0 ? "surroundings" : domain.bodies[region - 1].name;
 }
 
+Carried carried_in(const Domain& domain, std::size_t region) {
+    return region == 0 || domain.bodies[region - 1].deformation ? Carried::with_flow : Carried::with_mesh;
+}
+
 HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat& written) {
     table.allow({"region", "surface", "face"});
     const CaseTable regions = table.table("region");
@@ -143,7 +147,7 @@ HeatOptions read_heat(const CaseTable& table, const Domain& domain, WrittenHeat&
         const CaseTable region = regions.table(names[r]);
         heat.regions.push_back(read_region(NotedTable(region, probe, written.regions[r])));
         heat.regions[r].name = names[r];
-        heat.regions[r].carried = r == 0 ? Carried::with_flow : Carried::with_mesh;
+        heat.regions[r].carried = carried_in(domain, r);
     }
 
     heat.surfaces.resize(domain.bodies.size());

@@ -11,6 +11,8 @@ inline constexpr std::array<std::string_view, 6> face_keys = {"x_min", "x_max", 
 
 /// The name of a region: "surroundings", or the body's.
 [[nodiscard]] std::string region_name(const Domain& domain, std::size_t region);
+/// With the mesh goes what is in a rigid body that is wholly in the box.
+[[nodiscard]] Carried carried_in(const Domain& domain, std::size_t region);
 
 /// Reads [heat]: [heat.region.NAME] for the surroundings and every body, and [heat.face]. A body's material
 /// is carried with it; the surroundings rest, but for making way. Throws CaseError.

@@ -99,8 +99,13 @@ Species read_one(const CaseTable& table, const Case& given, WrittenSpecies& writ
     faces.allow(std::vector<std::string>(face_keys.begin(), face_keys.end()));
     for (std::size_t f = 0; f < face_keys.size(); ++f)
         if (faces.has(face_keys[f])) species.faces[f] = read_face(faces, face_keys[f], probe, written.faces);
-    if (!written.faces.empty() && !species.regions[0])
-        table.refuse("face", "needs the species in the surroundings, which alone reach the faces");
+    const auto meets_faces = [&](std::size_t r) {
+        return r == 0 || given.mesh || given.domain.bodies[r - 1].shape.cut;
+    };
+    bool there = false;
+    for (std::size_t r = 0; r < names.size(); ++r) there = there || (species.regions[r] && meets_faces(r));
+    if (!written.faces.empty() && !there)
+        table.refuse("face", "needs the species in the surroundings, or in a body that reaches through faces of the box");
     return species;
 }
 

@@ -241,6 +241,11 @@ StandsInBox stands_in_box(const Body& body, double t) {
     for (const Vec3& x : part.points)
         for (int face = 0; face < box_faces; ++face)
             if (x[face / 2] == plane_of(cut.box, face)) stands.faces |= 1u << face;
+    for (const Vec3& x : all.points)
+        for (int face = 0; face < box_faces; ++face) {
+            const double plane = plane_of(cut.box, face);
+            if (face % 2 == 0 ? x[face / 2] < plane : x[face / 2] > plane) stands.beyond |= 1u << face;
+        }
     return stands;
 }
 

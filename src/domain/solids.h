@@ -38,6 +38,7 @@ namespace kropla {
 struct StandsInBox {
     unsigned faces = 0;
     bool at_all = false;
+    unsigned beyond = 0;  // faces behind which something of it is: a slab under all of a floor ends there in no line
 };
 [[nodiscard]] StandsInBox stands_in_box(const Body& body, double t);
 

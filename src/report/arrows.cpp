@@ -30,13 +30,15 @@ std::optional<Vec3> velocity_at(const CutPolygon& polygon, Point2 p, const Array
     return {};
 }
 
-/// The places within the box around a polygon.
-std::vector<Point2> places_around(const CutPolygon& polygon, double spacing) {
+/// The places within the box around a polygon, as far as it is in the window.
+std::vector<Point2> places_around(const CutPolygon& polygon, const CutWindow& window, double spacing) {
     Point2 min = polygon.corners[0].place, max = min;
     for (const CutCorner& corner : corners(polygon)) {
         min = {std::min(min.x, corner.place.x), std::min(min.y, corner.place.y)};
         max = {std::max(max.x, corner.place.x), std::max(max.y, corner.place.y)};
     }
+    min = {std::max(min.x, window.min.x), std::max(min.y, window.min.y)};
+    max = {std::min(max.x, window.max.x), std::min(max.y, window.max.y)};
     std::vector<Point2> places;
     for (double row = std::ceil(min.y / spacing); row * spacing <= max.y; ++row) {
         const double shift = std::fmod(std::abs(row), 2) == 0 ? 0 : 0.5;
@@ -71,7 +73,7 @@ std::vector<Arrow> arrows(std::span<const CutPolygon> cut, std::span<const CutPo
                           const ArrowOptions& options) {
     std::vector<Arrow> all;
     for (const CutPolygon& polygon : cut)
-        for (const Point2 place : places_around(polygon, options.spacing)) {
+        for (const Point2 place : places_around(polygon, options.window, options.spacing)) {
             const std::optional<Vec3> known = velocity_at(polygon, place, velocity);
             if (!known) continue;
             const Point2 flow = {dot(*known, plane.right), dot(*known, plane.up)};

@@ -81,7 +81,8 @@ std::string speed_rows(std::span<const CutFrame> frames, const std::vector<Parte
     const auto draw = [&](const CutFrame& f, const CutWindow& window) {
         heed(watch);
         const auto i = static_cast<std::size_t>(&f - frames.data());
-        const ArrowOptions options{.spacing = (window.max.x - window.min.x) / arrows_across, .most = most};
+        const ArrowOptions options{
+            .spacing = (window.max.x - window.min.x) / arrows_across, .most = most, .window = window};
         return draw_flow(parts[i].flowing, speed.values[i], colours, window, parts[i].solid,
                          arrows(parts[i].flowing, parts[i].solid, f.plane, *velocity_of(f), options));
     };

@@ -13,10 +13,6 @@
 
 namespace kropla {
 
-/// The part of a cut that is shown [m].
-struct CutWindow {
-    Point2 min, max;
-};
 [[nodiscard]] CutWindow extent(std::span<const CutPolygon> cut);
 [[nodiscard]] CutWindow around(Point2 middle, double half_side);
 

@@ -120,7 +120,7 @@ std::optional<EnergyBalance> energy_of(const Table& steps, const std::vector<Fac
                                         {"heat_at_surfaces", &balance.surfaces},
                                         {"heat_held", &balance.held},
                                         {"heat_by_volume", &balance.expansion}}) {
-        if (!has_column(steps, column)) continue;  // of an older run
+        if (total == &balance.expansion && !has_column(steps, column)) continue;  // a run of an older version
         const std::vector<double> power = numbers(steps, column);
         *total = integral(power, dt);
         bring(power);

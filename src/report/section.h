@@ -33,6 +33,11 @@ struct CutPolygon {
     std::array<CutCorner, 7> corners;
 };
 
+/// The part of a cut that is shown [m].
+struct CutWindow {
+    Point2 min, max;
+};
+
 /// All cells cut by the plane; those it touches without area are left out. A facet in the plane is cut out of
 /// one of its two cells, so that every place of the plane inside the mesh is covered once. The curve in which the
 /// plane meets a bent quad of a prism is drawn straight.

@@ -135,4 +135,16 @@ std::vector<RegionSurface> region_surfaces(const Mesh& mesh, std::size_t regions
     return surfaces;
 }
 
+std::vector<Vertex> vertices_of(const Mesh& mesh, const Cells& cells) {
+    Array<Vertex, char> seen(mesh.position.size(), 0);
+    for_each_cell(cells, [&](const auto& cell) {
+        for (Vertex v : cell_vertices(mesh, cell)) seen[v] = 1;
+    });
+    std::vector<Vertex> vertices;
+    for (Vertex v : mesh.position.indices()) {
+        if (seen[v]) vertices.push_back(v);
+    }
+    return vertices;
+}
+
 }  // namespace kropla

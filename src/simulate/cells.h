@@ -71,6 +71,9 @@ struct RegionSurface {
 /// The facets of cells on each face of the box, with their normal (right hand) out of it.
 using FaceFacets = std::array<std::vector<std::array<Vertex, 3>>, 6>;
 [[nodiscard]] FaceFacets facets_of_faces(const Mesh& mesh, const Cells& cells);
+/// The vertices of cells, ascending.
+[[nodiscard]] std::vector<Vertex> vertices_of(const Mesh& mesh, const Cells& cells);
+
 /// Those of the boundary that are on no face of the box: fixed walls.
 [[nodiscard]] std::vector<std::array<Vertex, 3>> facets_of_fixed_walls(const Mesh& mesh, const Cells& cells);
 

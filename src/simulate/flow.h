@@ -88,10 +88,9 @@ using ContactAngles = std::array<std::optional<double>, 6>;
 struct FlowOptions {
     // Of region 0, 1, ...: a liquid or gas, or nothing: a solid body.
     std::vector<std::optional<FlowRegion>> regions;
-    // Velocities of regions 1, 2, ...; of those that are empty, or not there: the mesh's, (x1 - x0) / dt, of
-    // first order in time where a body accelerates.
+    // Velocities of regions 1, 2, ..., and instead of them those of their surfaces at each place, if these do not move as a
+    // whole. Of bodies with neither: the mesh's, (x1 - x0) / dt, of first order in time where a body accelerates.
     std::vector<std::function<RigidVelocity(double t)>> bodies = {};
-    // Of those that do not move as a whole instead [m/s], at each place of their surfaces.
     std::vector<VectorField> surfaces = {};
     std::vector<Tension> tension = {};     // of the surfaces of regions 1, 2, ... that are liquid, and
     std::vector<ContactAngles> contact = {};  // of those that reach through faces
@@ -182,7 +181,8 @@ void check_flow(const FlowOptions& options, const Mesh& mesh);
 /// the end of the step may be empty where no property depends on it. Without an open face the mean of the
 /// pressure is zero. Boundary of patches from 6 on that is no layer's is
 /// a wall. Where faces meet, a wall holds, unless what is given passes a face there: then what of it goes along the
-/// wall, so that all that is given comes in; then the first one with a velocity, then slip. All ranks
+/// wall, so that all that is given comes in; then the first one with a velocity, then slip. Where the surface of a body
+/// that moves ends on a wall or slips along a face, only what of its velocity goes along that counts. All ranks
 /// call it together with the same arguments, and all get the whole state. The solver's options have the
 /// prefix flow_: -flow_ksp_type, -flow_pc_type. Throws CaseError as check_flow, or if dt is not positive, a
 /// quantity not finite or what flows in has no way out; SolverError if the solver or Newton's method does not

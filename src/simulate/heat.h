@@ -18,7 +18,7 @@ namespace kropla {
 //     rho c (dT/dt + u . grad T) = div(k grad T) + s.
 //
 // With the shape functions phi_i of tets and prisms (elements.h) that move with the mesh (velocity w), with
-// div u = 0, and with u.n = w.n where a region ends, it reads, region by region, in conservative form
+// div u = 0 (or see below), and with u.n = w.n where a region ends, it reads, region by region, in conservative form
 //     d/dt (M T)_i = integral(rho c T (u - w).grad phi_i) - integral(k grad T.grad phi_i) + load_i,
 // M_ij = integral(rho c phi_i phi_j). A step by backward Euler:
 //     M1 T1 - M0 T0 + L (T1 - T0 - moved.grad T1) = dt (C - K) T1 + dt load,
@@ -147,8 +147,8 @@ void check_heat(const HeatOptions& options, const Mesh& mesh);
 [[nodiscard]] NodalField initial_temperature(const Mesh& mesh, const HeatOptions& options);
 
 /// The heat that leaves a body through its surface in a step, in the mean over the step, positive out of it.
-/// `total` * dt is, to the solver's tolerance, what the body's energy fell by, less what sources and the surface itself
-/// brought.
+/// `total` * dt is, to the solver's tolerance, what the body's energy fell by and what sources, the surface itself, faces of the
+/// box and expansion brought.
 struct SurfaceFlux {
     Region body;
     double total = 0;              // [W]

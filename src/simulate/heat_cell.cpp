@@ -152,7 +152,7 @@ void add_mass_by_density(const Cell<n>& cell, const CellPoints<n>& at_end, Carry
         for (std::size_t i = 0; i < n; ++i) {
             const double lumped = now * mean_product(k, i, cell.thin);
             carrying.row_sum[i] += lumped * (1 + cell.leaves[i]);
-            system.held[i] += cell.slope[i] * now * means.value[i] * cell.thin[i];  // the column's sum: by rows it is no content
+            system.held[i] += cell.slope[i] * now * means.value[i] * cell.thin[i];  // the sum of a column: as much as energy counts
             system.right[i] += lumped * cell.comes[i] * cell.old[i];
             system.load[i] += cell.dt * now * means.value[i] * cell.source[i];
             for (std::size_t j = 0; j < n; ++j) {

@@ -138,6 +138,15 @@ private:
     HeatConditions& conditions_;
 };
 
+/// What is at no vertex of the cells.
+void leave_others_out(const Mesh& mesh, const Cells& cells, HeatConditions& conditions) {
+    Array<Vertex, char> there(mesh.position.size(), 0);
+    for (Vertex v : vertices_of(mesh, cells)) there[v] = 1;
+    const auto is_elsewhere = [&](const auto& at) { return there[at.vertex] == 0; };
+    std::erase_if(conditions.shares, is_elsewhere);
+    std::erase_if(conditions.fixed, is_elsewhere);
+}
+
 }  // namespace
 
 double BoundaryShare::given(double temperature) const {
@@ -150,8 +159,8 @@ double BoundaryShare::slope(double temperature) const {
     return coefficient + 4 * radiation * temperature * temperature * temperature;
 }
 
-HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const HeatOptions& options, double t, double dt,
-                               const Watch* watch) {
+HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const HeatOptions& options, Region only, double t,
+                               double dt, const Watch* watch) {
     const StepInTime step{before, current, t, dt, watch};
     HeatConditions conditions{sources(step, options), {}, {}};
     Boundary boundary(step, conditions);
@@ -165,7 +174,8 @@ HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const He
         for (Vertex v : shares_of_region(current, Region(r)).vertices)
             fix(v, *options.regions[r].held, {Origin::Kind::held, r});
     }
-    const auto facets = facets_of_faces(current, living_cells(current));
+    const Cells cells = living_cells(current, only);
+    const auto facets = facets_of_faces(current, cells);
     for (std::size_t f = 0; f < options.faces.size(); ++f) {
         const HeatFace& face = options.faces[f];
         if (face.kind == HeatFace::Kind::insulated) continue;
@@ -191,6 +201,7 @@ HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const He
         boundary.add_known(shares, surface.at_vertices, origin);
         boundary.add_exchange(shares, surface.exchange, origin, surface_key(options, body));
     }
+    if (only.exists()) leave_others_out(current, cells, conditions);
     return conditions;
 }
 

@@ -41,9 +41,9 @@ struct HeatConditions {
     std::vector<FixedValue> fixed;  // at the step's end; each vertex once
 };
 
-/// Of the step from t to t + dt. Throws CaseError if a quantity is not finite, or out of its range, or a power has no
-/// place to go.
-[[nodiscard]] HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const HeatOptions& options,
+/// Of the step from t to t + dt; if one region alone is stepped, at its vertices. Throws CaseError if a quantity is not
+/// finite, or out of its range, or a power has no place to go.
+[[nodiscard]] HeatConditions heat_conditions(const Mesh& before, const Mesh& current, const HeatOptions& options, Region only,
                                              double t, double dt, const Watch* watch);
 
 }  // namespace kropla

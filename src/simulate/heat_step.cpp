@@ -3,6 +3,7 @@
 #include "simulate/heat_step.h"
 
 #include <kropla/base/error.h>
+#include <kropla/simulate/species.h>
 #include "simulate/bounded.h"
 #include "simulate/carried.h"
 #include "simulate/heat_solution.h"
@@ -107,7 +108,7 @@ std::vector<Region> regions_that(Carried move, const HeatOptions& options) {
 HeatReport step_heat_in(const Ranks& ranks, const Mesh& before, const Mesh& current, const HeatOptions& options,
                         const MaterialFlow& flow, Region only, Array<Vertex, double>& values, double t, double dt,
                         const Array<Vertex, double>& guess) {
-    const HeatConditions conditions = heat_conditions(before, current, options, t, dt, ranks.watch);
+    const HeatConditions conditions = heat_conditions(before, current, options, only, t, dt, ranks.watch);
     HeatStep step = heat_step(before, current, options, conditions, flow, values, dt);
     step.only = only;
     HeatSolution solution(ranks, step, conditions);
@@ -151,9 +152,14 @@ void keep_within(const Ranks& ranks, const Mesh& mesh, const HeatOptions& option
     }
 }
 
+void keep_within(const Ranks& ranks, const Mesh& mesh, Region region, double least, double most, Array<Vertex, double>& values) {
+    const auto one = [](auto&&...) { return 1.0; };
+    keep_values(ranks, mesh, living_cells(mesh, region), least, most, one, one, values);
+}
+
 void settle_start(const Ranks& ranks, const Mesh& mesh, const HeatOptions& options, NodalField& field) {
     const double dt = long_enough(mesh, options);
-    HeatConditions conditions = heat_conditions(mesh, mesh, options, 0, dt, ranks.watch);
+    HeatConditions conditions = heat_conditions(mesh, mesh, options, {}, 0, dt, ranks.watch);
     Array<Vertex, char> known(mesh.position.size(), 0);
     for (const FixedValue& fixed : conditions.fixed) known[fixed.vertex] = 1;
     for (std::size_t r = 0; r < options.regions.size(); ++r) {

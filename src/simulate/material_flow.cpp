@@ -8,6 +8,7 @@
 #include "simulate/solver.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace kropla {
 namespace {
@@ -50,20 +51,21 @@ Array<Vertex, double> shares_of_volume(const Mesh& mesh, const Cells& cells) {
     return share;
 }
 
-/// Lists what passes the faces of the box, from a region.
-void add_through(const Mesh& mesh, Region region, const Cells& cells, const Array<Vertex, Vec3>& velocity,
-                 MaterialFlow& flow) {
-    const FaceFacets facets = facets_of_faces(mesh, cells);
+/// What passes each face of the box out of a region, at its vertices; empty where the region is not.
+using FaceRates = std::array<Array<Vertex, double>, 6>;
+
+FaceRates rates_of(const Mesh& mesh, const FaceFacets& facets, const Array<Vertex, Vec3>& velocity) {
+    FaceRates rates;
     for (std::size_t face = 0; face < facets.size(); ++face) {
-        Array<Vertex, double> rate(mesh.position.size(), 0.0);
+        if (facets[face].empty()) continue;
+        rates[face].resize(mesh.position.size(), 0.0);
         for (const auto& facet : facets[face]) {
             const Vec3 area = area_vector(mesh, facet);
             const Vec3 sum = velocity[facet[0]] + velocity[facet[1]] + velocity[facet[2]];
-            for (Vertex v : facet) rate[v] += dot(area, velocity[v] + sum) / 12;
+            for (Vertex v : facet) rates[face][v] += dot(area, velocity[v] + sum) / 12;
         }
-        for (Vertex v : rate.indices())
-            if (rate[v] != 0) flow.through.push_back({v, region, face, rate[v]});
     }
+    return rates;
 }
 
 /// Of each piece.
@@ -74,41 +76,48 @@ std::vector<double> sums_of(const Pieces& pieces, const Array<Vertex, double>& v
     return sum;
 }
 
-/// Takes the sum over each piece out of the source by what passes the open faces that it meets, evenly.
-void let_rest_out(const Mesh& mesh, Region region, const Cells& cells, const Pieces& pieces, const std::array<bool, 6>& open,
-                  Array<Vertex, double>& source, MaterialFlow& flow) {
-    const FaceFacets facets = facets_of_faces(mesh, cells);
-    const std::vector<double> rest = sums_of(pieces, source);
-    std::vector<double> area(rest.size(), 0.0);
-    const auto for_each_corner = [&](const auto& visit) {
-        for (std::size_t face = 0; face < facets.size(); ++face)
-            for (const auto& facet : facets[face])
-                for (Vertex v : facet)
-                    if (open[face]) visit(v, as_size(pieces.of[v]), face, norm(area_vector(mesh, facet)) / 3);
-    };
-    for_each_corner([&](Vertex, std::size_t piece, std::size_t, double share) { area[piece] += share; });
-    for_each_corner([&](Vertex v, std::size_t piece, std::size_t face, double share) {
-        const double rate = -rest[piece] * share / area[piece];
-        flow.through.push_back({v, region, face, rate});
-        source[v] += rate;
-    });
+/// More passes faces, out of each piece the sum of what is asked for there, in proportion to the shares; not where the
+/// shares of a piece sum to `least` times that or less.
+void let_pass(const Pieces& pieces, const FaceRates& shares, double least, Array<Vertex, double>& asked, FaceRates& rates) {
+    const std::vector<double> rest = sums_of(pieces, asked);
+    std::vector<double> all(rest.size(), 0.0);
+    for (const auto& of_face : shares)
+        for (Vertex v : of_face.indices())
+            if (of_face[v] > 0) all[as_size(pieces.of[v])] += of_face[v];
+    for (std::size_t face = 0; face < shares.size(); ++face) {
+        for (Vertex v : shares[face].indices()) {
+            if (!(shares[face][v] > 0)) continue;
+            const auto piece = as_size(pieces.of[v]);
+            if (all[piece] <= least * std::abs(rest[piece])) continue;
+            const double more = -rest[piece] * shares[face][v] / all[piece];
+            rates[face][v] += more;
+            asked[v] += more;
+        }
+    }
 }
 
-/// The same of a region that is told, by more or less of what passes faces anyway, if that is more than the sum: where the body
-/// is round, its volume and what is seen of it in a face are polygons of their own.
-void let_rest_along(Region region, const Pieces& pieces, Array<Vertex, double>& source, MaterialFlow& flow) {
-    const std::vector<double> rest = sums_of(pieces, source);
-    std::vector<double> passes(rest.size(), 0.0);
-    for (const MaterialFlow::Through& part : flow.through)
-        if (part.region == region) passes[as_size(pieces.of[part.vertex])] += std::abs(part.rate);
-    for (MaterialFlow::Through& part : flow.through) {
-        if (part.region != region) continue;
-        const auto piece = as_size(pieces.of[part.vertex]);
-        if (std::abs(rest[piece]) >= passes[piece]) continue;
-        const double more = -rest[piece] * std::abs(part.rate) / passes[piece];
-        part.rate += more;
-        source[part.vertex] += more;
+/// What the velocity at the step's end lets out and the mesh's motion over the step does not ask for, or the other way round,
+/// passes open faces, evenly.
+void let_rest_out(const Mesh& mesh, const FaceFacets& facets, const Pieces& pieces, const std::array<bool, 6>& open,
+                  Array<Vertex, double>& asked, FaceRates& rates) {
+    FaceRates areas;
+    for (std::size_t face = 0; face < facets.size(); ++face) {
+        if (!open[face] || facets[face].empty()) continue;
+        areas[face].resize(mesh.position.size(), 0.0);
+        rates[face].resize(mesh.position.size(), 0.0);
+        for (const auto& facet : facets[face])
+            for (Vertex v : facet) areas[face][v] += norm(area_vector(mesh, facet)) / 3;
     }
+    let_pass(pieces, areas, 0, asked, rates);
+}
+
+/// Where a told body is round, it grows by a polygon and what is seen of it in a face is another: as much more or less passes.
+void let_rest_along(const Pieces& pieces, Array<Vertex, double>& asked, FaceRates& rates) {
+    constexpr double several = 5;  // of what polygons of five edges can differ by, a fifth of the area
+    FaceRates sizes = rates;
+    for (auto& of_face : sizes)
+        for (double& rate : of_face) rate = std::abs(rate);
+    let_pass(pieces, sizes, several, asked, rates);
 }
 
 /// Takes from `source` the integrals of grad phi_i . velocity over the cells.
@@ -126,23 +135,23 @@ void take_divergence(const Mesh& mesh, const Cells& cells, const Array<Vertex, V
     });
 }
 
-/// Takes the sum over each piece out of `swept`, from each vertex after its share of the volume: else there is no solution.
-/// Returns what was taken per share.
-Array<Vertex, double> balance(const Pieces& pieces, const Array<Vertex, double>& share, Array<Vertex, double>& swept) {
-    const std::vector<double> rest = sums_of(pieces, swept), volume = sums_of(pieces, share);
-    Array<Vertex, double> taken(swept.size(), 0.0);
-    for (Vertex v : swept.indices()) {
+/// The sum of what is asked for in each piece, which no potential has, becomes expansion, evenly by volume.
+void spread(const Pieces& pieces, const Array<Vertex, double>& share, Array<Vertex, double>& asked,
+            Array<Vertex, double>& expansion) {
+    const std::vector<double> rest = sums_of(pieces, asked), volume = sums_of(pieces, share);
+    for (Vertex v : asked.indices()) {
         if (pieces.of[v] < 0) continue;
-        taken[v] = rest[as_size(pieces.of[v])] / volume[as_size(pieces.of[v])];
-        swept[v] -= taken[v] * share[v];
+        const double rate = rest[as_size(pieces.of[v])] / volume[as_size(pieces.of[v])];
+        expansion[v] += rate;
+        asked[v] -= rate * share[v];
     }
-    return taken;
 }
 
 /// Is the volume kept, but for rounding?
 bool is_rounding(const Array<Vertex, double>& expansion, const Array<Vertex, double>& share, double dt) {
     constexpr double rounding = 1e-13;  // [-] of the volume
-    return std::ranges::all_of(expansion.indices(), [&](Vertex v) { return share[v] == 0 || std::abs(expansion[v]) * dt < rounding; });
+    return std::ranges::all_of(expansion.indices(),
+                               [&](Vertex v) { return share[v] == 0 || std::abs(expansion[v]) * dt < rounding; });
 }
 
 /// What a vertex's mass grows by [kg/s], less what the mesh and the velocity bring to it within the region.
@@ -175,25 +184,6 @@ Array<Vertex, double> shares_of_mass(const Mesh& mesh, const Cells& cells, const
     Array<Vertex, double> share(mesh.position.size(), 0.0);
     for_each_mass(mesh, cells, density, [&](const auto&, Vertex v, double mass) { share[v] += mass; });
     return share;
-}
-
-/// What the mesh asks for at each vertex of a region, and what passes faces there, less what the velocity has of it. Lists what
-/// passes faces.
-Array<Vertex, double> asked_for(const Step& step, Region region, const Cells& cells, const SolvedFlow& solved, MaterialFlow& flow) {
-    Array<Vertex, double> source;
-    const std::size_t known = flow.through.size();
-    if (region == flow.by_mass) {
-        source = missing_mass(step, cells, solved);
-        for (const FaceMass& part : solved.through) flow.through.push_back({part.vertex, region, part.face, part.rate});
-    } else {
-        source = swept_by_boundary(step, region);
-        if (const Array<Vertex, Vec3>& velocity = flow.velocity_in(region); !velocity.empty()) {
-            add_through(step.current, region, cells, velocity, flow);
-            take_divergence(step.current, cells, velocity, source);
-        }
-    }
-    for (std::size_t k = known; k < flow.through.size(); ++k) source[flow.through[k].vertex] += flow.through[k].rate;
-    return source;
 }
 
 /// The unknowns of a region, among those of all cells: the rows that this rank owns, as many of them as are of the region,
@@ -301,53 +291,109 @@ Array<Vertex, double> at_vertices(const Mesh& mesh, const Part& part, const std:
     return at;
 }
 
+/// The region of a flow by itself.
+class FlowOfRegion {
+public:
+    FlowOfRegion(const Step& step, Region region, const SolvedFlow& solved, const ToldFlow* told, MaterialFlow& flow)
+        : step_(step), region_(region), cells_(living_cells(step.current, region)), by_mass_(region == flow.by_mass),
+          told_(told), flow_(flow) {
+        if (by_mass_) ask_for_mass(solved);
+        else ask_for_volume(solved);
+        for (const auto& of_face : rates_)
+            for (Vertex v : of_face.indices()) asked_[v] += of_face[v];
+    }
+
+    /// Is anything asked for?
+    [[nodiscard]] bool moves() const {
+        return (told_ != nullptr && !told_->expansion.empty()) || std::ranges::any_of(asked_, [](double a) { return a != 0; });
+    }
+
+    void solve(const Ranks& ranks, const std::array<bool, 6>& open) {
+        const Mesh& mesh = step_.current;
+        const Pieces pieces = pieces_of(mesh, cells_);
+        const Array<Vertex, double> share =
+            by_mass_ ? shares_of_mass(mesh, cells_, flow_.density) : shares_of_volume(mesh, cells_);
+        Array<Vertex, double> expansion(share.size(), 0.0);
+        if (told_ != nullptr && !told_->expansion.empty()) expansion = told_->expansion;
+        for (Vertex v : asked_.indices()) asked_[v] -= expansion[v] * share[v];
+        if (told_ != nullptr) let_rest_along(pieces, asked_, rates_);
+        else if (!by_mass_ && std::ranges::any_of(open, std::identity()))
+            let_rest_out(mesh, facets_of_faces(mesh, cells_), pieces, open, asked_, rates_);
+        spread(pieces, share, asked_, expansion);
+        if (!is_rounding(expansion, share, step_.dt)) flow_.expansion[region_] = std::move(expansion);
+        note_through();
+        solve_potential(ranks, pieces, share);
+    }
+
+private:
+    void ask_for_mass(const SolvedFlow& solved) {
+        asked_ = missing_mass(step_, cells_, solved);
+        for (auto& of_face : rates_) of_face.resize(asked_.size(), 0.0);
+        for (const FaceMass& part : solved.through) rates_[part.face][part.vertex] += part.rate;
+    }
+    void ask_for_volume(const SolvedFlow& solved) {
+        asked_ = swept_by_boundary(step_, region_);
+        const Array<Vertex, Vec3>& velocity = told_ != nullptr ? told_->velocity : solved.velocity;
+        if (velocity.empty()) return;
+        rates_ = rates_of(step_.current, facets_of_faces(step_.current, cells_), velocity);
+        take_divergence(step_.current, cells_, velocity, asked_);
+    }
+
+    void note_through() {
+        for (std::size_t face = 0; face < rates_.size(); ++face)
+            for (Vertex v : rates_[face].indices())
+                if (rates_[face][v] != 0) flow_.through.push_back({v, region_, face, rates_[face][v]});
+    }
+
+    void solve_potential(const Ranks& ranks, const Pieces& pieces, const Array<Vertex, double>& share) {
+        const Mesh& mesh = step_.current;
+        if (!flow_.pattern) flow_.pattern = std::make_shared<Pattern>(make_pattern(mesh, living_cells(mesh), ranks));
+        const Part part = part_of(*flow_.pattern, pieces);
+        const std::vector<double> matrix =
+            laplacian(mesh, *flow_.pattern, region_, by_mass_ ? flow_.density : Array<Vertex, double>{}, ranks.watch);
+        const LinearSystem system = potential_system(part, matrix, asked_, share, step_.dt);
+        const Solution potential = kropla::solve(ranks, system,
+                                                 {.name = "potential flow",
+                                                  .prefix = "potential_",
+                                                  .preconditioner = Preconditioner::multigrid,
+                                                  .tolerance = 2e-13,
+                                                  .potential = true});
+        flow_.potential[region_] = at_vertices(mesh, part, potential.value);
+        flow_.iterations += potential.iterations;
+    }
+
+    const Step& step_;
+    Region region_;
+    Cells cells_;
+    bool by_mass_;  // what is conserved
+    const ToldFlow* told_;  // or nothing
+    MaterialFlow& flow_;
+    Array<Vertex, double> asked_;  // of the potential, at each vertex
+    FaceRates rates_;
+};
+
 }  // namespace
 
 MaterialFlow material_flow(const Ranks& ranks, const Mesh& before, const Mesh& current,
                            const std::vector<Region>& flowing, double dt, const SolvedFlow& solved,
                            const std::vector<ToldFlow>& told) {
     const std::size_t regions = count_regions(current);
-    MaterialFlow flow{Array<Region, Array<Vertex, double>>(regions), solved.velocity, Array<Region, Array<Vertex, Vec3>>(regions),
-                      Array<Region, Array<Vertex, double>>(regions)};
-    Array<Region, const ToldFlow*> said(regions, nullptr);
-    for (const ToldFlow& of : told) {
-        said[of.region] = &of;
-        flow.told[of.region] = of.velocity;
-    }
-    const Step step{before, current, dt};
-    const SolverChoice choice{.name = "potential flow",
-                              .prefix = "potential_",
-                              .preconditioner = Preconditioner::multigrid,
-                              .tolerance = 2e-13,
-                              .potential = true};
+    MaterialFlow flow{.potential = Array<Region, Array<Vertex, double>>(regions),
+                      .velocity = solved.velocity,
+                      .told = Array<Region, Array<Vertex, Vec3>>(regions),
+                      .expansion = Array<Region, Array<Vertex, double>>(regions)};
     if (!solved.density.empty()) {
         flow.by_mass = flowing.front();
         flow.density_before = solved.density_before;
         flow.density = solved.density;
     }
+    const Step step{before, current, dt};
     for (Region region : flowing) {
-        const Cells cells = living_cells(current, region);
-        Array<Vertex, double> source = asked_for(step, region, cells, solved, flow);
-        const bool expands = said[region] && !said[region]->expansion.empty();
-        if (!expands && std::ranges::all_of(source, [](double s) { return s == 0; })) continue;
-        const Pieces pieces = pieces_of(current, cells);
-        const Array<Vertex, double> share = region == flow.by_mass ? shares_of_mass(current, cells, flow.density)
-                                                                   : shares_of_volume(current, cells);
-        const Array<Vertex, double> of_told = expands ? said[region]->expansion : Array<Vertex, double>(share.size(), 0.0);
-        for (Vertex v : source.indices()) source[v] -= of_told[v] * share[v];
-        if (said[region]) let_rest_along(region, pieces, source, flow);
-        else if (region != flow.by_mass) let_rest_out(current, region, cells, pieces, solved.open, source, flow);
-        Array<Vertex, double> expansion = balance(pieces, share, source);
-        for (Vertex v : expansion.indices()) expansion[v] += of_told[v];
-        if (!is_rounding(expansion, share, dt)) flow.expansion[region] = std::move(expansion);
-        if (!flow.pattern) flow.pattern = std::make_shared<Pattern>(make_pattern(current, living_cells(current), ranks));
-        const Part part = part_of(*flow.pattern, pieces);
-        const std::vector<double> matrix =
-            laplacian(current, *flow.pattern, region, region == flow.by_mass ? flow.density : Array<Vertex, double>{}, ranks.watch);
-        const LinearSystem system = potential_system(part, matrix, source, share, dt);
-        const Solution potential = solve(ranks, system, choice);
-        flow.potential[region] = at_vertices(current, part, potential.value);
-        flow.iterations += potential.iterations;
+        if (as_size(region.value) >= regions) continue;  // it has no cells any more
+        const auto of = std::ranges::find(told, region, &ToldFlow::region);
+        if (of != told.end()) flow.told[region] = of->velocity;
+        FlowOfRegion part(step, region, solved, of != told.end() ? &*of : nullptr, flow);
+        if (part.moves()) part.solve(ranks, solved.open);
     }
     return flow;
 }

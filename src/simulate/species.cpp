@@ -38,7 +38,7 @@ HeatOptions as_heat(const Species& species, std::size_t region, const HeatOption
     options.regions[region].material.conductivity = species.regions[region]->diffusivity;
     options.regions[region].initial = species.regions[region]->initial;
     options.regions[region].source = species.regions[region]->source;
-    if (region == 0) options.faces = species.faces;
+    options.faces = species.faces;
     options.surfaces.resize(species.surfaces.size());
     for (std::size_t body = 1; body <= species.surfaces.size(); ++body) {
         if (region == 0) options.surfaces[body - 1] = passing(species.surfaces[body - 1], surfaces, body, 1);

@@ -39,6 +39,10 @@ using Concentrations = std::vector<Array<Vertex, double>>;
 /// the mesh has other regions.
 [[nodiscard]] Concentrations initial_concentrations(const Mesh& mesh, const Species& species);
 
+/// Brings values of a region that a transfer left beyond `least` and `most` [kg/m^3] back to them, and what this takes comes from
+/// vertices around (bounded.h): the amount stays. All ranks call it together.
+void keep_within(const Ranks& ranks, const Mesh& mesh, Region region, double least, double most, Array<Vertex, double>& values);
+
 /// Of each region where the species is: the balance of amounts [kg], `surfaces` and `faces` among them.
 struct SpeciesReport {
     std::vector<HeatBalance> balance;

@@ -78,7 +78,7 @@ TEST(RunDeforming, KeepsTheVolumeOfAFlowThatDoes) {
     EXPECT_EQ(kropla_program(folder, "check d").code, 0);
 }
 
-// As long as the flow of the gas is not solved for, it makes way; and the body's heat and dye go as it is told.
+// The gas, which is not solved for, makes way. That what is in the drop goes with it is asked in told_flow_test.cpp.
 TEST(RunDeforming, CarriesHeatAndSpecies) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", std::string(drop_case) + R"toml([heat.region.surroundings]
@@ -100,21 +100,27 @@ initial = "x"
     const Outcome ended = kropla_program(folder, "run a.toml --out d");
     ASSERT_EQ(ended.code, 0) << ended.err;
     const auto columns = lasting_columns(folder.path / "d");
+    double dye = 0, by_volume = 0;
     for (std::size_t step = 0; step < 4; ++step) {
         const auto number = [&](const std::string& name) { return std::stod(columns.at(name)[step]); };
         EXPECT_NEAR(number("energy_error"), 0, 1e-12 * number("energy_integral"));
-        EXPECT_NEAR(number("heat_by_volume") * number("dt"), 0, 1e-4 * number("energy_integral")) << "by facets alone";
-        EXPECT_NEAR(number("dye_integral") / number("volume_drop"), number("x_drop"), 2e-3) << "it goes with what is dyed";
+        EXPECT_NEAR(number("heat_by_volume") * number("dt"), 0, 4.4e-7 * number("energy_integral")) << "by facets alone";
+        by_volume += number("dye_by_volume");
+        EXPECT_NEAR(number("dye_error"), 0, 1e-12 * number("dye_integral"));
+        if (step > 0) {
+            EXPECT_NEAR(number("dye_integral") - by_volume, dye, 1e-12 * dye);
+        }
+        dye = number("dye_integral") - by_volume;
         EXPECT_GE(number("temperature_min_drop"), 300 - 1e-9);
         EXPECT_LE(number("temperature_max_drop"), 650 + 1e-9);
     }
 }
 
-// A ball in a box of liquid that swells pushes it out through the face that is open.
+// A ball in a box of liquid that swells pushes it out through the face that is open; and it turns.
 TEST(RunDeforming, PushesTheFlow) {
     const TemporaryFolder folder;
     const std::string swells = replaced(drop_case, "[\"0.5*sin(pi*x)*cos(pi*y)\", \"-0.5*cos(pi*x)*sin(pi*y)\", 0]",
-                                        "[\"0.3*(x-0.5)\", \"0.3*(y-0.5)\", \"0.3*(z-0.5)\"]");
+                                        "[\"0.3*(x-0.5) - 0.8*(y-0.5)\", \"0.3*(y-0.5) + 0.8*(x-0.5)\", \"0.3*(z-0.5)\"]");
     write(folder.path / "a.toml", swells + "[flow]\nconvection = false\n[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n"
                                            "[flow.face]\nz_max = { pressure = 0 }\n");
     const Outcome ended = kropla_program(folder, "run a.toml --out d");
@@ -122,7 +128,8 @@ TEST(RunDeforming, PushesTheFlow) {
     const auto columns = lasting_columns(folder.path / "d");
     for (std::size_t step = 0; step < 4; ++step) {
         const auto number = [&](const std::string& name) { return std::stod(columns.at(name)[step]); };
-        EXPECT_NEAR(number("volume_out_z_max"), 0.9 * number("volume_drop"), 0.02 * 0.9 * number("volume_drop"));
+        EXPECT_NEAR(number("volume_out_z_max"), 0.9 * number("volume_drop"), 1e-8);
+        EXPECT_NEAR(number("spin_z_drop"), 0.8, 1.2e-8);
         EXPECT_GT(number("force_z_drop"), 0) << "towards the face that is open";
         EXPECT_LE(number("max_aspect_ratio"), 6);
     }
@@ -148,6 +155,16 @@ TEST(RunDeforming, AVelocityThatIsNoNumberEndsTheRunByItsName) {
     EXPECT_EQ(ended.code, 2);
     EXPECT_NE(ended.err.find("a.toml: body[0].motion.velocity: is not a number at ("), std::string::npos) << ended.err;
     EXPECT_TRUE(fs::exists(folder.path / "d/report.html"));
+}
+
+// In a closed box of liquid a body may deform, and also come to a stop: then what its facets let in is rounding.
+TEST(RunDeforming, StopsInAClosedBox) {
+    const TemporaryFolder folder;
+    const std::string stops = replaced(drop_case, "[\"0.5*sin(pi*x)*cos(pi*y)\", \"-0.5*cos(pi*x)*sin(pi*y)\", 0]",
+                                       "[\"0.3*(x-0.5)*max(0, 1 - t/0.3)\", \"-0.3*(y-0.5)*max(0, 1 - t/0.3)\", 0]");
+    write(folder.path / "a.toml", stops + "[flow.region.surroundings]\ndensity = 1\nviscosity = 1\n");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    EXPECT_EQ(ended.code, 0) << ended.err;
 }
 
 }  // namespace

@@ -296,7 +296,7 @@ initial = 500
     for (std::size_t step = 0; step < 5; ++step) {
         const auto number = [&](const std::string& name) { return std::stod(columns.at(name)[step]); };
         const double t = 0.2 * (double(step) + 1), dt = 0.2, speed = 0.4 + 0.4 * t, mean = 0.4 + 0.4 * t - 0.2 * dt;
-        EXPECT_NEAR(number("volume_out_z_min"), speed, 1e-4 * speed);
+        EXPECT_NEAR(number("volume_out_z_min"), speed, 1e-10 * speed);
         EXPECT_NEAR(number("volume_out_z_max"), 0, 1e-12);
         EXPECT_NEAR(number("force_z_piston"), 2 * 0.4 * (1.5 - 0.4 * t - 0.2 * t * t), 1e-3) << "of what it accelerates";
         EXPECT_NEAR(number("heat_by_volume"), 0, 1e-6) << "all that goes passes a face";
@@ -352,14 +352,14 @@ TEST(RunSolids, AWireBringsInWhatItHas) {
     for (std::size_t step = 0; step < 6; ++step) {
         const auto number = [&](const std::string& name) { return std::stod(columns.at(name)[step]); };
         const double came = (double(step) + 1) / 3;  // as warm as the face was: 500 K
-        EXPECT_NEAR(number("temperature_mean_wire"), (2 * 400 + came * 500) / (2 + came), 0.3);
+        EXPECT_NEAR(number("temperature_mean_wire"), (2 * 400 + came * 500) / (2 + came), 0.052);
         EXPECT_GE(number("temperature_min_wire"), 300 - 1e-9);
         EXPECT_LE(number("temperature_max_wire"), 500 + 1e-9);
         EXPECT_NEAR(number("energy_error"), 0, 1e-12 * number("energy_integral"));
         EXPECT_NEAR(number("dye_integral") / number("volume_wire"), 1, 1e-12);
-        if (step > 0) {
+        if (step == 1) {
             const double displaced = 3 * (number("volume_wire") - volume);  // gas at 300 K, or a little warmed, has to go
-            EXPECT_NEAR(number("heat_by_volume"), -1000 * 300 * displaced, 0.0105 * 1000 * 300 * displaced);
+            EXPECT_NEAR(number("heat_by_volume"), -1000 * 300 * displaced, 0.005 * 1000 * 300 * displaced);
         }
         volume = number("volume_wire");
     }
@@ -376,7 +376,7 @@ TEST(RunSolids, NothingFlowsInBesideAWireThroughAWall) {
     const auto columns = lasting_columns(folder.path / "d");
     for (std::size_t step = 0; step < 6; ++step) {
         EXPECT_NEAR(std::stod(columns.at("volume_out_z_max")[step]), 0, 1e-12);
-        EXPECT_NEAR(std::stod(columns.at("volume_out_x_min")[step]), std::stod(columns.at("volume_wire")[5]) / 4, 0.05);
+        EXPECT_NEAR(std::stod(columns.at("volume_out_x_min")[step]), std::stod(columns.at("volume_wire")[5]) / 4, 0.0135);
         EXPECT_LE(std::stod(columns.at("max_aspect_ratio")[step]), 6);
     }
     write(folder.path / "closed.toml", replaced(text, "[flow.face]\nx_min = { pressure = 0 }\n", ""));
@@ -385,7 +385,7 @@ TEST(RunSolids, NothingFlowsInBesideAWireThroughAWall) {
     expect_one_line(refused.err, "m^3/s flow in without a way out at t = 0.333333 s: open a face");
 }
 
-// A gas whose density is of the temperature is pushed out by a hot wire, and keeps its energy per mass.
+// A gas whose density is of the temperature is pushed out by a hot wire; its temperature is what energy and density make of it.
 TEST(RunSolids, AHotWireIsFedIntoGasThatExpands) {
     const TemporaryFolder folder;
     std::string text = replaced(fed_wire, "density = 1\n", "density = \"300/T\"\n");
@@ -400,7 +400,61 @@ TEST(RunSolids, AHotWireIsFedIntoGasThatExpands) {
         EXPECT_NEAR(number("energy_error"), 0, 1e-12 * number("energy_integral"));
         EXPECT_NEAR(number("mass_error_surroundings"), 0, 1e-12);
         EXPECT_LE(number("temperature_max_wire"), 1000 + 1e-7);
+        EXPECT_GT(number("volume_out_x_min"), 1) << "what the wire displaces at the least; the gas is warmed, too";
+        const std::string frame = contents(folder.path / "d/frames" / ("0000" + std::to_string(step + 1) + ".vtu"));
+        const auto range = frame.find("RangeMin=\"", frame.find("Name=\"temperature\"")) + 10;
+        EXPECT_GE(std::stod(frame.substr(range, 20)), 300 - 1e-7) << "of the gas";
     }
+}
+
+// A pool covers the floor and a part of the sides; what comes in there is of the region that is there.
+TEST(RunSolids, SpeciesComeInThroughFacesThatABodyReaches) {
+    constexpr std::string_view text = R"toml([domain]
+min = [-1, -1, 0]
+max = [1, 1, 2]
+[[body]]
+name = "pool"
+shape = "slab"
+min = [-1, -1, 0]
+max = [1, 1, 0.5]
+[body.motion]
+z = "0.1*t"
+[size]
+surface = 0.3
+growth = 0.4
+far = 0.5
+[time]
+end = 2
+steps = 2
+[[species]]
+name = "dye"
+[species.region.surroundings]
+diffusivity = 1
+initial = 1
+[species.region.pool]
+diffusivity = 1e-3
+initial = 2
+[species.face]
+z_min = { flux = 0.5 }
+x_min = { value = 3 }
+y_max = { flux = -0.01 }
+)toml";
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", std::string(text));
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto columns = lasting_columns(folder.path / "d");
+    for (const std::string& error : columns.at("dye_error")) EXPECT_NEAR(std::stod(error), 0, 1e-12 * 9);
+    const std::string only_fluxes =
+        replaced(replaced(text, "x_min = { value = 3 }\n", ""), "[body.motion]\nz = \"0.1*t\"\n", "");
+    write(folder.path / "b.toml", only_fluxes);
+    const Outcome again = kropla_program(folder, "run b.toml --out e");
+    ASSERT_EQ(again.code, 0) << again.err;
+    const double start = 4 * (0.5 * 2 + 1.5), came = 2 * (4 * 0.5 - 4 * 0.01);
+    EXPECT_NEAR(std::stod(lasting_columns(folder.path / "e").at("dye_integral")[1]), start + came, 1e-11);
+    write(folder.path / "c.toml", replaced(replaced(only_fluxes, "[species.region.surroundings]\ndiffusivity = 1\ninitial = 1\n", ""),
+                                           "y_max = { flux = -0.01 }\n", ""));
+    EXPECT_EQ(kropla_program(folder, "run c.toml --out f").code, 0) << "the pool reaches faces";
 }
 
 /// Before anything is meshed, or with the first mesh. With a prism at hand.

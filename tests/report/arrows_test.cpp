@@ -55,6 +55,14 @@ TEST(Arrows, StayOutOfSolids) {
     EXPECT_LT(far.size(), near.size());
 }
 
+TEST(Arrows, AreOfTheWindowAlone) {
+    const Cut cut;
+    const auto velocity = velocities(cut.mesh, [](const Vec3&) { return Vec3{1, 0, 0}; });
+    const auto few = arrows(cut.flowing, {}, cut.plane, velocity, {.spacing = 0.001, .most = 1, .window = {{1, 1}, {1.01, 1.01}}});
+    EXPECT_GE(few.size(), 80u);
+    EXPECT_LE(few.size(), 155u);  // in all of the cut there are millions
+}
+
 TEST(Arrows, AreNotDrawnOfRest) {
     const Cut cut;
     const auto across = velocities(cut.mesh, [](const Vec3&) { return Vec3{0, 1, 0}; });

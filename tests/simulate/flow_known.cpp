@@ -153,9 +153,13 @@ Outcome drag_in_cube(const Ranks& ranks, int fineness) {
 Outcome way_to_floor(const Ranks& ranks, int fineness) {
     Outcome outcome;
     const double f = fineness, start = fineness == 1 ? 2.1 : 4.1, each = 0.1 / f;
-    const Domain domain = sphere_in({{-10, -10, -start}, {10, 10, 20 - start}},
-                                    {.surface = 0.2 / f, .growth = 0.5 / f, .far = 4 / f},
-                                    [](double t) { return Pose{{0, 0, -t}, {}}; });
+    Domain domain = sphere_in({{-10, -10, -start}, {10, 10, 20 - start}},
+                              {.surface = 0.2 / f, .growth = 0.5 / f, .far = 4 / f},
+                              [](double t) { return Pose{{0, 0, -t}, {}}; });
+    domain.bodies[0].size = 0.2 / f;
+    domain.bodies[0].local_size = [f](const Vec3& x) {  // half of it at the poles: the gap will be as narrow
+        return std::clamp(0.05 + 0.2 * std::hypot(x.x, x.y), 0.1, 0.2) / f;
+    };
     FlowOptions options = around_body(1e-6);
     options.bodies.push_back([](double t) { return RigidVelocity{{0, 0, -t}, {0, 0, -1}, {}}; });
     MovingFlow flow(ranks, domain, options, outcome);
