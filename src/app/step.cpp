@@ -3,6 +3,7 @@
 #include "case/heat.h"
 #include "app/flow_fields.h"
 #include "app/liquid_bodies.h"
+#include "app/span.h"
 #include "app/species_fields.h"
 #include "app/told_flows.h"
 #include "simulate/cells.h"
@@ -25,27 +26,6 @@ namespace {
 
 constexpr double agreed_density = 0.005;  // [-] of it, in the mean: how far it may be behind the temperature, and
 constexpr int most_rounds = 5;           // of flow and heat in turns
-
-/// The least and the most of a field.
-struct Span {
-    double least = INFINITY, most = -INFINITY;
-
-    /// Is the other one within it, but for rounding?
-    [[nodiscard]] bool holds(const Span& other) const {
-        constexpr double rounding = 1e-13;  // [-] of the largest value: what a transfer may leave beyond bounds
-        const double margin = rounding * std::max(std::abs(least), std::abs(most));
-        return other.least >= least - margin && other.most <= most + margin;
-    }
-};
-/// In a region, or everywhere.
-Span span_of(const Mesh& mesh, const Array<Vertex, double>& values, Region region = {}) {
-    Span span;
-    for (Vertex v : vertices_of(mesh, living_cells(mesh, region))) {
-        span.least = std::min(span.least, values[v]);
-        span.most = std::max(span.most, values[v]);
-    }
-    return span;
-}
 
 /// The coldest and hottest vertex of a region.
 struct Extremes {

@@ -48,8 +48,17 @@ const T& by_density(const Cell<n, Four>&, const T& carried) {
 }
 
 bool flows(const HeatStep& step, Region region) {
-    const bool rests = step.options.regions[static_cast<std::size_t>(region.value)].carried == Carried::with_flow;
-    return rests && (!step.flow.potential[region].empty() || !step.flow.velocity_in(region).empty());
+    const bool with_flow = step.options.regions[as_size(region.value)].carried == Carried::with_flow;
+    return with_flow && (!step.flow.potential[region].empty() || !step.flow.velocity_in(region).empty());
+}
+
+/// At these rates [1/s].
+template <std::size_t n>
+void expand(const std::array<double, n>& rates, Cell<n>& cell) {
+    for (std::size_t i = 0; i < n; ++i) {
+        cell.comes[i] = std::max(cell.dt * rates[i], 0.0);
+        cell.leaves[i] = std::max(-cell.dt * rates[i], 0.0);
+    }
 }
 
 template <std::size_t n, class Name>
@@ -99,13 +108,7 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
         cell.density = mean_of(cell.thin);
     }
     if (flowing) cell.velocity = at_corners(step.flow.velocity_in(region), v);
-    if (flowing && step.flow.expands(region)) {
-        for (std::size_t i = 0; i < n; ++i) {
-            const double grown = step.dt * step.flow.expansion[region][v[i]];
-            cell.comes[i] = std::max(grown, 0.0);
-            cell.leaves[i] = std::max(-grown, 0.0);
-        }
-    }
+    if (flowing && step.flow.expands(region)) expand(at_corners(step.flow.expansion[region], v), cell);
     if (!step.low.empty())
         for (Vertex corner : v) cell.low = cell.low || step.low[corner] != 0;
     return cell;
