@@ -26,7 +26,7 @@ struct Cell {
     std::array<Number, n> source;     // [W/m^3]
     std::array<Number, n> potential;  // of the flow [m^2/s]
     Corners<n, Number> velocity;      // of it, besides [m/s]
-    std::array<Number, n> comes, leaves;  // [-] of the volume: material that does as it expands
+    std::array<double, n> expansion;  // of what is there, in the step [-]
     Number conductivity;              // [W/(m K)]
     double dt;                        // [s]
     Number density;                   // [kg/m^3] where enthalpies are per mass, the mean of the corners; else one
@@ -34,6 +34,7 @@ struct Cell {
     bool by_mass;
     bool convects;                    // it flows, or moves past its material
     bool proportional;                // the enthalpy is `slope` times the temperature, anywhere
+    bool expands;                     // or shrinks; four cells at once never do
     bool low;                         // of low order
 };
 
@@ -50,15 +51,6 @@ const T& by_density(const Cell<n, Four>&, const T& carried) {
 bool flows(const HeatStep& step, Region region) {
     const bool with_flow = step.options.regions[as_size(region.value)].carried == Carried::with_flow;
     return with_flow && (!step.flow.potential[region].empty() || !step.flow.velocity_in(region).empty());
-}
-
-/// At these rates [1/s].
-template <std::size_t n>
-void expand(const std::array<double, n>& rates, Cell<n>& cell) {
-    for (std::size_t i = 0; i < n; ++i) {
-        cell.comes[i] = std::max(cell.dt * rates[i], 0.0);
-        cell.leaves[i] = std::max(-cell.dt * rates[i], 0.0);
-    }
 }
 
 template <std::size_t n, class Name>
@@ -80,8 +72,7 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
                  .source = at_corners(step.source[region], v),
                  .potential = at_corners(step.flow.potential[region], v),
                  .velocity = {},
-                 .comes = {},
-                 .leaves = {},
+                 .expansion = {},
                  .conductivity = conductivity.constant() ? conductivity(0) : mean_of(at_corners(state.conductivity, v)),
                  .dt = step.dt,
                  .density = 1,
@@ -90,6 +81,7 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
                  .by_mass = region == step.flow.by_mass,
                  .convects = false,
                  .proportional = enthalpy.proportional(),
+                 .expands = flowing && step.flow.expands(region),
                  .low = false};
     cell.x0 = carried.empty() ? cell.begin : corners(carried, step.current, name);
     cell.convects = flowing || cell.x0 != cell.x1;
@@ -108,7 +100,8 @@ Cell<n> gather(const HeatStep& step, const Name& name) {
         cell.density = mean_of(cell.thin);
     }
     if (flowing) cell.velocity = at_corners(step.flow.velocity_in(region), v);
-    if (flowing && step.flow.expands(region)) expand(at_corners(step.flow.expansion[region], v), cell);
+    if (cell.expands)
+        for (std::size_t i = 0; i < n; ++i) cell.expansion[i] = step.dt * step.flow.expansion[region][v[i]];
     if (!step.low.empty())
         for (Vertex corner : v) cell.low = cell.low || step.low[corner] != 0;
     return cell;
@@ -121,8 +114,7 @@ struct Carrying {
     std::array<Number, n> row_sum = {};
 };
 
-/// What there is, at the step's begin and end. Of material that expands more comes, of the enthalpy at the begin, or some leaves,
-/// of that at the end. In the matrix the consistent mass and L add up to the lumped one; on the
+/// What there is, at the step's begin and end. In the matrix the consistent mass and L add up to the lumped one; on the
 /// old enthalpy they act with the old and the new volume. Of low order, both masses are lumped.
 template <std::size_t n, class Number>
 void add_mass(const Cell<n, Number>& cell, const CellPoints<n, Number>& at_end, Carrying<n, Number>& carrying,
@@ -134,9 +126,9 @@ void add_mass(const Cell<n, Number>& cell, const CellPoints<n, Number>& at_end, 
         for (std::size_t i = 0; i < n; ++i) {
             const Number old_product = cell.low ? means.value[i] * cell.old[i] : mean_product(k, i, cell.old);
             const Number lumped = now * means.value[i];
-            carrying.row_sum[i] += lumped * (1 + cell.leaves[i]);
+            carrying.row_sum[i] += lumped;
             system.held[i] += cell.slope[i] * lumped;
-            system.right[i] += lumped * (1 + cell.comes[i]) * cell.old[i] - gained * old_product;
+            system.right[i] += lumped * cell.old[i] - gained * old_product;
             system.load[i] += cell.dt * lumped * cell.source[i];
         }
     }
@@ -154,9 +146,8 @@ void add_mass_by_density(const Cell<n>& cell, const CellPoints<n>& at_end, Carry
         const double now = at_end[k].volume, before = at_begin[k].volume;
         for (std::size_t i = 0; i < n; ++i) {
             const double lumped = now * mean_product(k, i, cell.thin);
-            carrying.row_sum[i] += lumped * (1 + cell.leaves[i]);
+            carrying.row_sum[i] += lumped;
             system.held[i] += cell.slope[i] * now * means.value[i] * cell.thin[i];  // the sum of a column: as much as energy counts
-            system.right[i] += lumped * cell.comes[i] * cell.old[i];
             system.load[i] += cell.dt * now * means.value[i] * cell.source[i];
             for (std::size_t j = 0; j < n; ++j) {
                 const double product = means.product[i][j], rise = cell.old[i] - cell.old[j];
@@ -169,6 +160,19 @@ void add_mass_by_density(const Cell<n>& cell, const CellPoints<n>& at_end, Carry
                     system.right[i] += now * product * cell.density * rise;
                 }
             }
+        }
+    }
+}
+
+/// Of material that expands more comes, of the enthalpy at the begin, or some leaves, of that at the end.
+template <std::size_t n>
+void add_expansion(const Cell<n>& cell, const CellPoints<n>& at_end, Carrying<n, double>& carrying, CellSystem<n>& system) {
+    for (std::size_t k = 0; k < at_end.size(); ++k) {
+        for (std::size_t i = 0; i < n; ++i) {
+            const double mean = cell.by_mass ? mean_product(k, i, cell.thin) : shape_means<n>[k].value[i];
+            const double more = at_end[k].volume * mean * cell.expansion[i];
+            if (more > 0) system.right[i] += more * cell.old[i];
+            else carrying.row_sum[i] -= more;
         }
     }
 }
@@ -306,6 +310,7 @@ CellSystem<n, Number> system_of(const Cell<n, Number>& cell) {
     CellSystem<n, Number> system;
     if constexpr (std::is_same_v<Number, double>) {
         if (cell.by_mass) add_mass_by_density(cell, at_end, carrying, system);
+        if (cell.expands) add_expansion(cell, at_end, carrying, system);
     }
     if (!cell.by_mass) add_mass(cell, at_end, carrying, system);
     add_conduction(cell, at_end, system);
@@ -319,7 +324,7 @@ using FourTets = std::array<Cell<4>, 4>;
 /// Are the same terms asked for, of all four? Only where the enthalpy is proportional.
 bool alike(const FourTets& cells) {
     return std::ranges::all_of(cells, [&](const Cell<4>& cell) {
-        return cell.proportional && !cell.by_mass && cell.convects == cells[0].convects && cell.low == cells[0].low;
+        return cell.proportional && !cell.by_mass && !cell.expands && cell.convects == cells[0].convects && cell.low == cells[0].low;
     });
 }
 
@@ -351,8 +356,7 @@ Cell<4, Four> four_of(const FourTets& cells) {
             .source = together(cells, [](const auto& cell) -> auto& { return cell.source; }),
             .potential = together(cells, [](const auto& cell) -> auto& { return cell.potential; }),
             .velocity = places_together(cells, [](const auto& cell) -> auto& { return cell.velocity; }),
-            .comes = together(cells, [](const auto& cell) -> auto& { return cell.comes; }),
-            .leaves = together(cells, [](const auto& cell) -> auto& { return cell.leaves; }),
+            .expansion = {},
             .conductivity = Four(Four::Register{conductivity(0), conductivity(1), conductivity(2), conductivity(3)}),
             .dt = cells[0].dt,
             .density = 1,
@@ -361,6 +365,7 @@ Cell<4, Four> four_of(const FourTets& cells) {
             .by_mass = false,
             .convects = cells[0].convects,
             .proportional = true,
+            .expands = false,
             .low = cells[0].low};
 }
 
