@@ -189,6 +189,49 @@ void check_way_out(const Step& step, const Pattern& pattern, const FlowBoundary&
             refuse_net_flux(step, net[p], net.size() > 1 ? &x[at[p]] : nullptr);
 }
 
+/// Directions out of the bodies whose surfaces are told a velocity at each place, but at faces of the box.
+Array<Vertex, Vec3> normals_of_told(const Step& step, const FlowBoundary& boundary) {
+    const Array<Vertex, Vec3>& x = step.current.position;
+    Array<Vertex, Vec3> normals(x.size());
+    for (const SolidSurface& solid : boundary.solids) {
+        const auto number = as_size(solid.body.value - 1);
+        if (number >= step.options.surfaces.size() || !step.options.surfaces[number]) continue;
+        for (const auto& [a, b, c] : solid.facets)
+            for (Vertex v : {a, b, c}) normals[v] -= cross(x[b] - x[a], x[c] - x[a]);
+    }
+    for (const auto& facets : boundary.faces)
+        for (Vertex v : vertices_of(facets)) normals[v] = {};
+    for (Vec3& normal : normals)
+        if (squared_norm(normal) > 0) normal = normalised(normal);
+    return normals;
+}
+
+/// Between vertices a velocity is straight, and facets let in a little of what it does not where it bends: in parts without a way
+/// out that is taken back, evenly along normals.
+void balance_surfaces(const Step& step, const Pattern& pattern, const FlowBoundary& boundary, FlowConditions& conditions) {
+    if (std::ranges::none_of(step.options.surfaces, [](const VectorField& given) { return bool(given); })) return;
+    const Array<Vertex, Vec3> normals = normals_of_told(step, boundary);
+    const auto fluxes = [&](const Array<Vertex, Vec3>& velocity) {
+        std::vector<double> net(conditions.closed.size(), 0.0);
+        const auto add = [&](const auto& facets) {
+            for (const auto& facet : facets) net[pattern.piece_of(facet[0])] += flux_through({facet}, step.current.position, velocity);
+        };
+        for (std::size_t face = 0; face < 6; ++face)
+            if (step.options.faces[face].kind == FlowFace::Kind::velocity) add(boundary.faces[face]);
+        for (const SolidSurface& solid : boundary.solids) add(solid.facets);
+        return net;
+    };
+    const std::vector<double> out = fluxes(normals);
+    for (Array<Vertex, Vec3>* const given : {&conditions.end, &conditions.rate}) {
+        const std::vector<double> net = fluxes(*given);
+        for (Vertex v : normals.indices()) {
+            if (normals[v] == Vec3{}) continue;
+            const std::size_t piece = pattern.piece_of(v);
+            if (conditions.closed[piece] != 0 && out[piece] != 0) (*given)[v] -= net[piece] / out[piece] * normals[v];
+        }
+    }
+}
+
 /// Where it ends on faces of the box, as the options have it.
 void set_lines(const Mesh& mesh, const FlowOptions& options, LiquidSurface& liquid) {
     auto lines = contact_lines(mesh, liquid.body, liquid.vertices);
@@ -310,6 +353,7 @@ FlowConditions flow_conditions(const Mesh& before, const Mesh& current, const Fl
                 for (Vertex v : line.vertices) fix(step, v, at_rest, "", conditions);
     fix_solids(step, boundary.solids, {&walls, &slipping}, conditions);
     check_way_out(step, pattern, boundary, conditions);
+    balance_surfaces(step, pattern, boundary, conditions);
     return conditions;
 }
 

@@ -1,6 +1,7 @@
 """Random legal cases of a flow. All is drawn in radii, then scaled by a length, a density and a time:
 
-bodies   one to three in a row, spheres and ellipsoids: at rest, on a path, free, or liquid with surface tension
+bodies   one to three in a row, spheres and ellipsoids: at rest, on a path, free, liquid with surface tension, or in a velocity
+         field that takes them along, turns and strains them
 liquids  densities to 1e5 and viscosities to 1e3 times those around; Ohnesorge numbers from 0.01 to 1
 flow     Reynolds numbers from 0.01 to 200, Courant numbers about 1; walls, slip, openings, velocities; gravity
 layers   on one body in three: outside, inside, both
@@ -14,7 +15,7 @@ import random
 
 from case_maker import direction, log_uniform, numbers
 
-KINDS = ("rest", "path", "free", "liquid")
+KINDS = ("rest", "path", "free", "liquid", "field")
 
 
 class Scales:
@@ -49,8 +50,19 @@ def shape_lines(rng, radius, centre):
                     f"rotation = {numbers((*direction(rng), rng.uniform(0, 180)))}"]
 
 
-def motion_lines(rng, kind, scales):
+def strain(rng, centre, scales):
+    """Of the velocity at x, y, z: no divergence, a third of a radius or so in the run."""
+    rate = [rng.uniform(-0.4, 0.4) / scales.end for _ in range(5)]
+    x, y, z = (f"({axis} - {at!r})" for axis, at in zip("xyz", centre))
+    return (f"{rate[0]!r}*{x} + {rate[2]!r}*{y}", f"{rate[1]!r}*{y} + {rate[3]!r}*{x}",
+            f"{-rate[0] - rate[1]!r}*{z} + {rate[4]!r}*{y}")
+
+
+def motion_lines(rng, kind, centre, scales):
     way = direction(rng)
+    if kind == "field":
+        parts = (f'"{0.5 * scales.speed * u!r} + {part}"' for u, part in zip(way, strain(rng, centre, scales)))
+        return ["[body.motion]", 'kind = "field"', f"velocity = [{', '.join(parts)}]"]
     if kind == "path":
         swing = 0.1 * scales.speed * scales.end
         return ["[body.motion]"] + [f'{axis} = "{scales.speed * u!r}*t + {swing!r}*sin(6*t/{scales.end!r})"'
@@ -129,8 +141,9 @@ def make_case(seed, number, most_steps):
     for i, (name, kind) in enumerate(names.items()):
         if i > 0:
             along += radii[i - 1] + radii[i] + rng.uniform(0.8, 2) + 2 * scales.way
-        lines += ["", "[[body]]", f'name = "{name}"',
-                  *shape_lines(rng, radii[i] * scales.length, (along * scales.length, 0, 0)), *motion_lines(rng, kind, scales)]
+        centre = (along * scales.length, 0, 0)
+        lines += ["", "[[body]]", f'name = "{name}"', *shape_lines(rng, radii[i] * scales.length, centre),
+                  *motion_lines(rng, kind, centre, scales)]
         if rng.random() < 0.33:
             lines += layer_lines(rng, size * scales.length)
     room = [1.1 + 1.2 * scales.way + rng.uniform(0.8, 2) for _ in range(6)]
@@ -139,7 +152,7 @@ def make_case(seed, number, most_steps):
             f"max = {numbers(x * scales.length for x in high)}"]
     lines += ["", "[size]", f"surface = {size * scales.length!r}", f"growth = {rng.uniform(0.2, 0.5)!r}",
               f"far = {rng.uniform(1, 2) * scales.length!r}", "", "[time]", f"end = {scales.end!r}", f"steps = {steps}", ""]
-    if "free" in kinds and rng.random() < 0.5:
+    if "free" in kinds and "liquid" not in kinds and "field" not in kinds and rng.random() < 0.5:
         lines += ["[contact]", f"restitution = {rng.choice((0, 0.5, 0.9))}", ""]
     lines += flow_lines(rng, names, scales)
     if rng.random() < 0.6:
