@@ -3,6 +3,7 @@
 
 #include "case/heat.h"
 #include "case/noted_table.h"
+#include <kropla/domain/solids.h>
 
 #include <fmt/format.h>
 
@@ -111,6 +112,8 @@ unsigned pinned_faces(const ContactAngles& contact) {
 /// Throws where a face does not let the line of a liquid body do what it should.
 void check_contact(const CaseTable& flow, const FlowPlan& plan, const Domain& domain, std::size_t body) {
     const ContactAngles& contact = plan.options.contact[body];
+    const Body& liquid = domain.bodies[body];
+    const unsigned lines = liquid.shape.cut ? stands_in_box(liquid, 0).faces : 0;  // a pool may be on all of a face
     for (std::size_t face = 0; face < contact.size(); ++face) {
         if (!reaches(reached_faces(domain.bodies[body].shape), static_cast<int>(face))) continue;
         const FlowFace::Kind kind = plan.options.faces[face].kind;
@@ -118,7 +121,7 @@ void check_contact(const CaseTable& flow, const FlowPlan& plan, const Domain& do
         if (kind != FlowFace::Kind::wall && kind != FlowFace::Kind::slip)
             flow.table("face").refuse(name, fmt::format("must be \"wall\" or \"slip\": liquid body {} reaches through it",
                                                         domain.bodies[body].name));
-        if (contact[face] && kind != FlowFace::Kind::slip)
+        if (contact[face] && kind != FlowFace::Kind::slip && reaches(lines, static_cast<int>(face)))
             flow.table("surface").table(domain.bodies[body].name)
                 .refuse("contact", fmt::format("has the line move along {0}, where a wall without slip holds it: give it "
                                                "flow.face.{0} = \"slip\", or pin it", name));

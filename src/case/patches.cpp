@@ -49,10 +49,32 @@ std::map<std::string, Patch> faces_of_patches(const Mesh& mesh, const FileCells&
 
 namespace {
 
+/// Has a mesh facets in a face of the box that holds it?
+bool meets(const Mesh& mesh, Patch face) {
+    for (const Tet t : all_tets(mesh))
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            if (!mesh.neighbour[t][corner].exists() && mesh.patch[t][corner] == face) return true;
+    return false;
+}
+
+/// Of a name that is a face of the box itself. Throws CaseError if it is a patch's too, of another face, or if nothing is there
+/// that what is told could act on.
+void check_face(const CaseTable& table, const Case& given, const std::string& name) {
+    if (table.holds_text(name) && (table.text(name) == "wall" || table.text(name) == "insulated")) return;
+    const auto face = Patch(static_cast<int>(std::ranges::find(face_keys, name) - face_keys.begin()));
+    if (const auto patch = given.mesh->faces.find(name); patch != given.mesh->faces.end() && patch->second != face)
+        table.refuse(name, "is a face of the box, and the mesh has a patch of that name elsewhere: that is to have another name");
+    if (!meets(*given.mesh->mesh, face)) table.refuse(name, "is a face of the box that holds the mesh; nothing of the mesh is in it");
+}
+
 /// The key of a face, or "" if the name is no patch's. Throws CaseError if the patch is no face.
 std::string_view key_of(const CaseTable& table, const Case& given, const std::string& name) {
+    if (std::ranges::find(face_keys, name) != face_keys.end()) {
+        check_face(table, given, name);
+        return "";
+    }
     const auto patch = given.mesh->faces.find(name);
-    if (patch == given.mesh->faces.end() || std::ranges::find(face_keys, name) != face_keys.end()) return "";
+    if (patch == given.mesh->faces.end()) return "";
     if (!patch->second.exists())
         table.refuse(name, fmt::format("is a patch that is no face of the box as a whole; conditions are known at those only: {}",
                                        fmt::join(face_keys, ", ")));

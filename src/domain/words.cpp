@@ -57,7 +57,7 @@ std::string in_words(const Domain& domain, const Approach& approach) {
     const std::string body = named(domain.bodies[approach.body]);
     const bool is_wall = approach.wall >= 0;
     const std::string other = is_wall ? wall_name(approach.wall) : named(domain.bodies[approach.other]);
-    if (approach.gap == 0) return is_wall ? body + " touches " + other : body + " and " + other + " overlap";
+    if (approach.gap == 0) return is_wall ? body + " touches " + other : body + " and " + other + " touch or overlap";
     return is_wall ? body + " is " + metres(approach.gap) + " from " + other
                    : body + " and " + other + " are " + metres(approach.gap) + " apart";
 }

@@ -36,6 +36,14 @@ std::string replaced(std::string_view from, std::string_view to) {
     return text.replace(at, from.size(), to);
 }
 
+/// The case with heat, and this at faces.
+std::string heated(const std::string& faces) {
+    std::string text(case_text);
+    for (const char* region : {"surroundings", "rotor"})
+        text += fmt::format("[heat.region.{}]\nconductivity = 1\ndensity = 1\nspecific_heat = 1\ninitial = 300\n", region);
+    return text + "[heat.face]\n" + faces;
+}
+
 /// The case in a folder with its mesh.
 class CaseMeshTest : public testing::Test {
 protected:
@@ -94,6 +102,9 @@ TEST_F(CaseMeshTest, WhatIsInNoFaceStaysAsItIs) {
     const Case given = read(case_text);
     ASSERT_NE(given.domain.walls, nullptr);
     EXPECT_EQ(patch_numbers(cells_of(*given.mesh->mesh)), (std::vector{1, 3, 4, 5, 6, 7}));  // x min is still a plane
+    EXPECT_EQ(refusal(heated("x_max = { value = 400 }\n")),
+              "case.toml: heat.face.x_max (line 23): is a face of the box that holds the mesh; nothing of the mesh is in it");
+    EXPECT_NO_THROW((void)read(heated("x_max = \"insulated\"\nx_min = { value = 400 }\n")));
     Domain domain = given.domain;
     MovingMesh moving(domain, first_mesh(given, nullptr), 0);  // throws if they do not fit
 }
@@ -136,12 +147,7 @@ TEST_F(CaseMeshTest, RefusesInOneLine) {
 }
 
 TEST_F(CaseMeshTest, FacesMayBeCalledByTheNamesOfPatches) {
-    const auto with = [](const std::string& heat_face) {
-        std::string text(case_text);
-        for (const char* region : {"surroundings", "rotor"})
-            text += fmt::format("[heat.region.{}]\nconductivity = 1\ndensity = 1\nspecific_heat = 1\ninitial = 300\n", region);
-        return text + "[heat.face]\n" + heat_face;
-    };
+    const auto& with = heated;
     const std::string by_key = to_toml(read(with("x_min = { value = 400 }\n")));
     EXPECT_EQ(to_toml(read(with("inlet = { value = 400 }\n"))), by_key);
     EXPECT_EQ(refusal(with("inlet = { valu = 400 }\n")),
@@ -153,6 +159,13 @@ TEST_F(CaseMeshTest, FacesMayBeCalledByTheNamesOfPatches) {
               "case.toml: heat.face.inlet (line 24): is x_min, which stands there too");
     EXPECT_EQ(refusal(with("inlett = { value = 400 }\n")),
               "case.toml: heat.face.inlett (line 23): unknown key; did you mean \"inlet\"?");
+    FileCells cells = named_cube(6);
+    for (auto& [number, name] : cells.patch_names)
+        if (name == "inlet") name = "x_max";  // which it is not
+    write_mesh_file(folder / "a.msh", cells);
+    EXPECT_EQ(refusal(with("x_max = { value = 400 }\n")),
+              "case.toml: heat.face.x_max (line 23): is a face of the box, and the mesh has a patch of that name elsewhere: that is to "
+              "have another name");
 }
 
 TEST_F(CaseMeshTest, PrismsAndOverlapsAreRefused) {

@@ -178,9 +178,9 @@ TEST(Placement, RefusesBodiesTooCloseOrOverlapping) {
     EXPECT_EQ(placement(domain), "");
     domain.size.surface = 0.2;
     domain.bodies[1].shape.centre.z = 11.5;
-    EXPECT_EQ(placement(domain), "body \"droplet\" and body \"drop2\" overlap");
+    EXPECT_EQ(placement(domain), "body \"droplet\" and body \"drop2\" touch or overlap");
     domain.bodies[1].shape = ball({0, 0.2, 13}, 0.3);  // one within the other
-    EXPECT_EQ(placement(domain), "body \"droplet\" and body \"drop2\" overlap");
+    EXPECT_EQ(placement(domain), "body \"droplet\" and body \"drop2\" touch or overlap");
 }
 
 TEST(Placement, RefusesASizeTooCoarseForTheCurvature) {
@@ -216,7 +216,7 @@ TEST(Placement, FindsTheDistanceOfEllipsoids) {
         EXPECT_NE(refusal([&] { check_placement(domain, 0, sizes + 0.001); }).find("are 0.01 m apart"),
                   std::string::npos);
         domain.bodies[1].shape.centre -= 1.001 * gap * to;
-        EXPECT_EQ(refusal([&] { check_placement(domain, 0, 0.501); }), "body \"a\" and body \"b\" overlap");
+        EXPECT_EQ(refusal([&] { check_placement(domain, 0, 0.501); }), "body \"a\" and body \"b\" touch or overlap");
     }
 }
 

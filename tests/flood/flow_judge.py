@@ -8,7 +8,7 @@ from case_file import scene_of
 from geometry import minus, norm
 from judge import TRANSFER_ERROR, Verdict, check_series, frames_of, read_frame, rows_of
 
-CONSERVED = 1e-12  # [-] of a region's mass, and of the energy, in a step
+CONSERVED = 1e-12  # [-] of a region's mass, and of the energy or what of it passes faces, in a step
 ON_ITS_WAY = 1e-9  # [-] of the box: where a body that goes by a path is
 FOLLOWED = 2e-3  # [-] of a volume that a field takes along: a polyhedron goes with its vertices
 ROUNDER = 1e-3  # [-] a polyhedron may have less surface than a ball of its volume by this
@@ -82,7 +82,8 @@ def check_balances(case, rows, volumes, verdict):
             off = abs(float(row[f"mass_error_{name} [kg]"])) / mass
             verdict.mass_drift = max(verdict.mass_drift, off)
         if "energy_error [J]" in row:
-            off = abs(float(row["energy_error [J]"]) / float(row["energy_integral [J]"]))
+            passed = float(row["dt [s]"]) * sum(abs(float(value)) for name, value in row.items() if name.startswith("heat_out_"))
+            off = abs(float(row["energy_error [J]"])) / max(abs(float(row["energy_integral [J]"])), passed)
             verdict.energy_drift = max(verdict.energy_drift, off)
         check_bodies(case, rows[0], row, verdict)
     for what, drift, most in (("transfers", verdict.transfer_error, TRANSFER_ERROR), ("masses", verdict.mass_drift, CONSERVED),

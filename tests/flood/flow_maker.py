@@ -51,8 +51,8 @@ def shape_lines(rng, radius, centre):
 
 
 def strain(rng, centre, scales):
-    """Of the velocity at x, y, z: no divergence, a third of a radius or so in the run."""
-    rate = [rng.uniform(-0.4, 0.4) / scales.end for _ in range(5)]
+    """Of the velocity at x, y, z: no divergence, a tenth of a radius or so in the run."""
+    rate = [rng.uniform(-0.2, 0.2) / scales.end for _ in range(5)]
     x, y, z = (f"({axis} - {at!r})" for axis, at in zip("xyz", centre))
     return (f"{rate[0]!r}*{x} + {rate[2]!r}*{y}", f"{rate[1]!r}*{y} + {rate[3]!r}*{x}",
             f"{-rate[0] - rate[1]!r}*{z} + {rate[4]!r}*{y}")
