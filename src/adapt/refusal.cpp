@@ -68,8 +68,9 @@ std::string in_neck(const Snapshot& at, const Body& body, std::size_t number, co
 }
 
 std::string in_motion(const Domain& domain, std::size_t body, const Trouble& trouble) {
-    constexpr const char* help = "; a smaller size.surface or size.growth may help";
     const Body& moves = domain.bodies[body];
+    const std::string help = moves.size ? "; a smaller size of the body, " + metres(*moves.size) + " now, or size.growth may help"
+                                        : "; a smaller size.surface or size.growth may help";
     const std::string by_layer =
         moves.deformation && moves.layer ? "; the triangles under a layer stay, without one they would be adapted" : "";
     if (trouble.time == trouble.start) return "the mesh near " + named(moves) + " is not good enough" + help;
