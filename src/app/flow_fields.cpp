@@ -15,6 +15,33 @@ namespace {
 
 constexpr std::array<const char*, 3> components = {"velocity_x", "velocity_y", "velocity_z"};
 
+Vec3 middle_of_surface(const Mesh& mesh, Region body) {
+    Vec3 sum;
+    double area = 0;
+    for (const auto& facet : region_surface(mesh, body).interface) {
+        const double size = norm(area_vector(mesh, facet));
+        for (Vertex v : facet) sum += size / 3 * mesh.position[v];
+        area += size;
+    }
+    return area > 0 ? sum / area : Vec3{};
+}
+
+/// The pressure of what rests under gravity, of a liquid such that it is that around at the middle of its surface: so the first
+/// step has to find what moves alone, and what rests does from the start. `of` is of the surroundings, then of liquids.
+void start_at_rest(const Mesh& mesh, const Case& given, const std::vector<NodalField*>& of) {
+    const FlowOptions& flow = given.flow->options;
+    const Vec3 middle = 0.5 * (given.domain.box.min + given.domain.box.max);
+    const double outer = flow.regions[0]->density(0);
+    std::vector<Region> regions = liquids_of(given);
+    regions.insert(regions.begin(), Region(0));
+    for (std::size_t k = 0; k < regions.size(); ++k) {
+        const double density = flow.regions[as_size(regions[k].value)]->density(0);
+        const double level = k == 0 ? 0 : (outer - density) * dot(flow.gravity, middle_of_surface(mesh, regions[k]) - middle);
+        for (Vertex v : vertices_of(mesh, living_cells(mesh, regions[k])))
+            of[k]->values[v] = level + density * dot(flow.gravity, mesh.position[v] - middle);
+    }
+}
+
 }  // namespace
 
 std::size_t place_of_flow(const Case& given) { return (given.heat ? 1 : 0) + species_fields(given).size(); }
@@ -72,6 +99,11 @@ std::vector<NodalField> initial_flow(const Mesh& mesh, const Case& given, const 
         fields.push_back({"pressure_" + region_name(given.domain, as_size(liquid.value)), "Pa", Array<Vertex, double>(vertices, 0.0)});
     for (const char* name : {"rate_x", "rate_y", "rate_z"})
         if (!liquids.empty()) fields.push_back({name, "m/s^2", Array<Vertex, double>(vertices, 0.0)});
+    if (!expands(given)) {
+        std::vector<NodalField*> pressures = {&fields[3]};
+        for (std::size_t k = 0; k < liquids.size(); ++k) pressures.push_back(&fields[4 + k]);
+        start_at_rest(mesh, given, pressures);
+    }
     for (std::size_t r = 0; r < given.flow->initial.size(); ++r) {
         const std::string key = fmt::format("flow.region.{}.initial", region_name(given.domain, r));
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -56,7 +56,7 @@ public:
           surfaces_(blocks_.pattern, boundary_.liquids),
           conditions_(flow_conditions(before, current, options, blocks_.pattern, boundary_, start.velocity, t, dt)),
           material_(flow_materials(current, options, temperature)), guess_(start),
-          solver_(ranks, blocks_, fixed_unknowns()) {
+          stood_(before.position), solver_(ranks, blocks_, fixed_unknowns()) {
         system_.value = solver_.values();
         find_level();
         find_pressures();
@@ -262,8 +262,26 @@ private:
                 if (conditions_.fixed[v][static_cast<std::size_t>(m)]) guess_.velocity[v][m] = velocity[v][m];
     }
 
+    /// The pressure that is guessed is that of where vertices stood: there is the weight between. What rests under gravity on a
+    /// mesh that moves then needs no pass.
+    void take_weight_along(const Array<Vertex, Vec3>& position) {
+        if (options_.gravity == Vec3{} || gas_) return;
+        Array<Vertex, double> density(position.size(), 0.0);  // of the lowest region at each vertex
+        for_each_cell(cells_, [&](const auto& cell) {
+            const Region region = cell_region(current_, cell);
+            for (Vertex v : cell_vertices(current_, cell))
+                if (!numbering().is_upper(v, region)) density[v] = material_[region].density;
+        });
+        for_each_unknown([&](std::size_t, Vertex v, bool further) {
+            const double weighs = further ? material_[upper()[v]].density : density[v];
+            pressure_of(v, further) += weighs * dot(options_.gravity, position[v] - stood_[v]);
+        });
+        stood_ = position;
+    }
+
     void solve_stage(const StageTime& at, const Array<Vertex, Vec3>& old, double per_time) {
         const Array<Vertex, Vec3> position = between(before_, current_, at.share);
+        take_weight_along(position);
         const double time = t_ + at.share * dt_;
         if (gas_) gas_->begin(at, position, guess_.velocity, mesh_velocity_);
         set_forces(current_, position, options_, time, material_);
@@ -416,6 +434,7 @@ private:
     Array<Region, FlowMaterial> material_;
     std::optional<ExpandingGas> gas_;  // if the density depends on the temperature
     FlowState guess_;
+    Array<Vertex, Vec3> stood_;  // where the vertices of its pressure did [m]
     double level_ = 0;  // [Pa] of the pressure at open faces, beside which that of `guess_` is in pieces that reach them
     BlockSystem system_;
     std::vector<double> reaction_;  // the residual of the last assembly, as it is

@@ -59,6 +59,20 @@ TEST(RunFlow, ABallFallsAndGoesOnBitByBit) {
     for (const double lost : numbers(steps, "mass_error_surroundings")) EXPECT_NEAR(lost, 0, 1e-12);
 }
 
+// The pressure of what rests is there from the start, around a body too, so nothing has to be found.
+TEST(RunFlow, WhatRestsUnderGravityRests) {
+    const TemporaryFolder folder;
+    std::string text = falling(0.8, 2);
+    text.erase(text.find("[body.motion]"), text.find("[flow]") - text.find("[body.motion]"));
+    write(folder.path / "a.toml", text);
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const Table steps = read_table(folder.path / "d/steps.csv");
+    const double weight = numbers(steps, "volume_ball").back();
+    for (const double energy : numbers(steps, "kinetic_energy")) EXPECT_LE(energy, 1e-28);
+    for (const double force : numbers(steps, "force_z_ball")) EXPECT_NEAR(force, weight, 1e-12 * weight) << "that of Archimedes";
+}
+
 TEST(RunFlow, WhatIsHeldStaysAndSpinsGoOn) {
     const TemporaryFolder folder;
     write(folder.path / "a.toml", falling(0.2, 2, "density = 3\nspin = [0, 0, 2]\nhold = [\"x\", \"y\", \"turn_x\"]\n"));
