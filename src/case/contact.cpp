@@ -51,10 +51,6 @@ void read_contact(const CaseTable& file, Case& given) {
         if (given.domain.bodies[body].shape.surface)
             file.refuse("contact", fmt::format("is known between spheres and ellipsoids, and with faces of the box; {} is bounded by "
                                                "triangles, or reaches through a face", named(given.domain.bodies[body])));
-    for (const Body& body : given.domain.bodies)
-        if (body.deformation)
-            file.refuse("contact", fmt::format("is known between bodies that do not deform; {} does (motion.kind = \"field\" or "
-                                               "\"flow\")", named(body)));
     const CaseTable table = file.table("contact");
     table.allow({"lubrication", "restitution", "gap"});
     ContactOptions options{.gap = usual_gap(given), .reach = reach_in_sizes * given.domain.size.surface};

@@ -149,12 +149,14 @@ private:
         return who.wall >= 0 ? facing_wall(a, domain_.box, who.wall) : facing(a, shape_of(who.other, at_begin));
     }
 
+    /// Bodies that deform are left to the mesh: where they are is known to that alone.
     template <class Visit>
     void for_each_pair(const Visit& visit) const {
         for (const auto& [body, step] : bodies_) {
             for (int wall = 0; wall < 6; ++wall) visit(ContactPair{.body = body, .wall = wall});
             for (std::size_t other = 0; other < domain_.bodies.size(); ++other)
-                if (other != body && (other > body || !free_of(other))) visit(ContactPair{.body = body, .other = other});
+                if (other != body && (other > body || !free_of(other)) && !domain_.bodies[other].deformation)
+                    visit(ContactPair{.body = body, .other = other});
         }
     }
 

@@ -63,11 +63,6 @@ TEST(CaseContact, WhatIsWrongIsNamed) {
     EXPECT_EQ(refusal(text + "friction = 1\n"),
               "case.toml: contact.friction (line 24): unknown key; known here: lubrication, restitution, gap");
     const std::string floor = "[[body]]\nname = \"floor\"\nshape = \"slab\"\nmin = [0, 0, 0]\nmax = [1, 1, 0.2]\n[flow]\n";
-    const std::string swells = "[[body]]\nname = \"other\"\nshape = \"sphere\"\ncentre = [0.2, 0.2, 0.2]\nradius = 0.1\n"
-                               "[body.motion]\nkind = \"field\"\nvelocity = [0, 0, 0.1]\n[flow]\n";
-    EXPECT_EQ(refusal(replaced(text, "[flow]\n", swells)),
-              "case.toml: contact (line 31): is known between bodies that do not deform; body \"other\" does (motion.kind = \"field\" "
-              "or \"flow\")");
     EXPECT_EQ(refusal(replaced(text, "[flow]\n", floor)),
               "case.toml: contact (line 28): is known between spheres and ellipsoids, and with faces of the box; body \"floor\" is bounded "
               "by triangles, or reaches through a face");

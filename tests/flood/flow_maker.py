@@ -152,7 +152,7 @@ def make_case(seed, number, most_steps):
             f"max = {numbers(x * scales.length for x in high)}"]
     lines += ["", "[size]", f"surface = {size * scales.length!r}", f"growth = {rng.uniform(0.2, 0.5)!r}",
               f"far = {rng.uniform(1, 2) * scales.length!r}", "", "[time]", f"end = {scales.end!r}", f"steps = {steps}", ""]
-    if "free" in kinds and "liquid" not in kinds and "field" not in kinds and rng.random() < 0.5:
+    if "free" in kinds and rng.random() < 0.5:
         lines += ["[contact]", f"restitution = {rng.choice((0, 0.5, 0.9))}", ""]
     lines += flow_lines(rng, names, scales)
     if rng.random() < 0.6:
