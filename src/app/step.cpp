@@ -308,8 +308,8 @@ private:
     [[nodiscard]] std::vector<std::function<RigidVelocity(double)>> surface_velocities(double dt) const {
         std::vector<std::function<RigidVelocity(double)>> velocities;
         for (std::size_t body = 0; body < given_.domain.bodies.size(); ++body) {
-            velocities.emplace_back();  // told_surfaces
-            if (is_told(given_, body)) continue;
+            velocities.emplace_back();
+            if (is_told(given_, body)) continue;  // no rigid body's: told_surfaces has them
             velocities.back() = [&of = given_.domain.bodies[body], dt](double t) { return velocity_of(of, t, dt); };
         }
         for (const auto& [body, step] : free_) velocities[body] = [&step = step](double t) { return step.velocity(t); };

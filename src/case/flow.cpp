@@ -115,14 +115,14 @@ void check_contact(const CaseTable& flow, const FlowPlan& plan, const Domain& do
     const Body& liquid = domain.bodies[body];
     const unsigned lines = liquid.shape.cut ? stands_in_box(liquid, 0).faces : 0;  // a pool may be on all of a face
     for (std::size_t face = 0; face < contact.size(); ++face) {
-        if (!reaches(reached_faces(domain.bodies[body].shape), static_cast<int>(face))) continue;
+        if (!reaches(reached_faces(liquid.shape), static_cast<int>(face))) continue;
         const FlowFace::Kind kind = plan.options.faces[face].kind;
         const std::string_view name = face_keys[face];
         if (kind != FlowFace::Kind::wall && kind != FlowFace::Kind::slip)
             flow.table("face").refuse(name, fmt::format("must be \"wall\" or \"slip\": liquid body {} reaches through it",
-                                                        domain.bodies[body].name));
+                                                        liquid.name));
         if (contact[face] && kind != FlowFace::Kind::slip && reaches(lines, static_cast<int>(face)))
-            flow.table("surface").table(domain.bodies[body].name)
+            flow.table("surface").table(liquid.name)
                 .refuse("contact", fmt::format("has the line move along {0}, where a wall without slip holds it: give it "
                                                "flow.face.{0} = \"slip\", or pin it", name));
     }

@@ -50,7 +50,7 @@ std::map<std::string, Patch> faces_of_patches(const Mesh& mesh, const FileCells&
 namespace {
 
 /// Has a mesh facets in a face of the box that holds it?
-bool meets(const Mesh& mesh, Patch face) {
+bool has_facets_in(const Mesh& mesh, Patch face) {
     for (const Tet t : all_tets(mesh))
         for (std::size_t corner = 0; corner < 4; ++corner)
             if (!mesh.neighbour[t][corner].exists() && mesh.patch[t][corner] == face) return true;
@@ -64,7 +64,7 @@ void check_face(const CaseTable& table, const Case& given, const std::string& na
     const auto face = Patch(static_cast<int>(std::ranges::find(face_keys, name) - face_keys.begin()));
     if (const auto patch = given.mesh->faces.find(name); patch != given.mesh->faces.end() && patch->second != face)
         table.refuse(name, "is a face of the box, and the mesh has a patch of that name elsewhere: that is to have another name");
-    if (!meets(*given.mesh->mesh, face)) table.refuse(name, "is a face of the box that holds the mesh; nothing of the mesh is in it");
+    if (!has_facets_in(*given.mesh->mesh, face)) table.refuse(name, "is a face of the box that holds the mesh; nothing of the mesh is in it");
 }
 
 /// The key of a face, or "" if the name is no patch's. Throws CaseError if the patch is no face.

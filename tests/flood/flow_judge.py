@@ -10,7 +10,7 @@ from judge import TRANSFER_ERROR, Verdict, check_series, frames_of, read_frame, 
 
 CONSERVED = 1e-12  # [-] of a region's mass, and of the energy or what of it passes faces, in a step
 ON_ITS_WAY = 1e-9  # [-] of the box: where a body that goes by a path is
-FOLLOWED = 2e-3  # [-] of a volume that a field takes along: a polyhedron goes with its vertices
+FOLLOWED = 1e-7  # [-] of a volume that a field takes along, by the method of Runge and Kutta; 2.3e-8 in forty cases
 ROUNDER = 1e-3  # [-] a polyhedron may have less surface than a ball of its volume by this
 
 
