@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 
 namespace kropla {
@@ -178,18 +179,45 @@ AspectGradient tet_aspect_gradient(const Vec3& a, const Vec3& b, const Vec3& c, 
     return {aspect_ratio, aspect_ratio * (grad_m / mm + grad_n / n - (2 / v6) * vw)};
 }
 
+namespace {
+
+/// An angle by what are in proportion to its sine and cosine.
+struct Turn {
+    double sine, cosine;
+
+    [[nodiscard]] double angle() const { return std::atan2(sine, cosine); }
+    [[nodiscard]] double cotangent() const { return cosine / sine; }
+};
+
 // At the edge shared by the facets with outward normals p and q the angle is pi less the one between them,
 // and |p x q| = V6 |edge|; the arc tangent is accurate for all angles.
-std::array<double, 6> tet_dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+std::array<Turn, 6> dihedral_turns(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     // Outward normals of the facets, named by the opposite corners.
     const Vec3 at_a = cross(c - b, d - b), at_b = cross(d - a, c - a);
     const Vec3 at_c = cross(b - a, d - a), at_d = cross(c - a, b - a);
     const double v6 = determinant(b - a, c - a, d - a);
-    const auto angle = [v6](const Vec3& p, const Vec3& q, const Vec3& edge) {
-        return std::atan2(v6 * norm(edge), -dot(p, q));
-    };
-    return {angle(at_c, at_d, b - a), angle(at_b, at_d, c - a), angle(at_b, at_c, d - a),
-            angle(at_a, at_d, c - b), angle(at_a, at_c, d - b), angle(at_a, at_b, d - c)};
+    const auto turn = [v6](const Vec3& p, const Vec3& q, const Vec3& edge) { return Turn{v6 * norm(edge), -dot(p, q)}; };
+    return {turn(at_c, at_d, b - a), turn(at_b, at_d, c - a), turn(at_b, at_c, d - a),
+            turn(at_a, at_d, c - b), turn(at_a, at_c, d - b), turn(at_a, at_b, d - c)};
+}
+
+}  // namespace
+
+std::array<double, 6> tet_dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    std::array<double, 6> angles;
+    std::ranges::transform(dihedral_turns(a, b, c, d), angles.begin(), &Turn::angle);
+    return angles;
+}
+
+// Between zero and pi the cotangent only falls: two arc tangents will do, which cost more than all the rest.
+DihedralRange tet_dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const auto turns = dihedral_turns(a, b, c, d);
+    if (std::ranges::all_of(turns, [](const Turn& turn) { return turn.sine > 0; })) {
+        const auto [least, largest] = std::ranges::minmax_element(turns, std::greater(), &Turn::cotangent);
+        return {least->angle(), largest->angle()};
+    }
+    const auto [least, largest] = std::ranges::minmax(tet_dihedral_angles(a, b, c, d));
+    return {least, largest};
 }
 
 Vec3 tet_circumcentre(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

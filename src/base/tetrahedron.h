@@ -66,6 +66,12 @@ struct AspectGradient {
 [[nodiscard]] std::array<double, 6> tet_dihedral_angles(const Vec3& a, const Vec3& b, const Vec3& c,
                                                          const Vec3& d);
 
+/// The least and the largest of them.
+struct DihedralRange {
+    double least, largest;  // [rad]
+};
+[[nodiscard]] DihedralRange tet_dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
 /// The centre of the sphere through the four points, which are not coplanar.
 [[nodiscard]] Vec3 tet_circumcentre(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 

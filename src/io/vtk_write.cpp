@@ -109,9 +109,8 @@ void add_cells(vtkUnstructuredGrid* grid, const FileCells& cells) {
 
 double min_dihedral(const Mesh& mesh, Tet t) {
     const auto& v = mesh.tets[t];
-    const auto angles = tet_dihedral_angles(mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]],
-                                            mesh.position[v[3]]);
-    return *std::min_element(angles.begin(), angles.end()) * (180 / std::numbers::pi);
+    return tet_dihedral_range(mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]], mesh.position[v[3]]).least *
+           (180 / std::numbers::pi);
 }
 
 /// As an aspect ratio: 3 is perfect, infinity turned over.

@@ -57,8 +57,7 @@ QualitySummary summarise_quality(const Mesh& mesh, Region only) {
         ratios.push_back(ratio);
         for (Vertex v : mesh.tets[t]) seen[v] = 1;
         sum += ratio;
-        const auto angles = tet_dihedral_angles(a, b, c, d);
-        const auto [least, largest] = std::ranges::minmax(angles);
+        const auto [least, largest] = tet_dihedral_range(a, b, c, d);
         summary.min_dihedral = std::min(summary.min_dihedral, least * 180 / std::numbers::pi);
         summary.max_dihedral = std::max(summary.max_dihedral, largest * 180 / std::numbers::pi);
     }

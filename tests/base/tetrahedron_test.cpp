@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
 namespace kropla {
 namespace {
@@ -142,6 +143,19 @@ TEST(TetShape, DihedralAngles) {
     const auto angles = tet_dihedral_angles(c[0], c[1], c[2], c[3]);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(angles[i], std::numbers::pi / 2, 1e-15);
     for (std::size_t i = 3; i < 6; ++i) EXPECT_NEAR(angles[i], std::acos(1 / std::sqrt(3.0)), 1e-15);
+}
+
+TEST(TetShape, TheRangeIsThatOfItsDihedralAngles) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto point = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
+    for (int i = 0; i < 1000; ++i) {  // half of them turned over
+        const Vec3 a = point(), b = point(), c = point(), d = point();
+        const auto angles = tet_dihedral_angles(a, b, c, d);
+        const auto [least, largest] = tet_dihedral_range(a, b, c, d);
+        EXPECT_EQ(least, std::ranges::min(angles)) << i << " of seed 7";
+        EXPECT_EQ(largest, std::ranges::max(angles)) << i << " of seed 7";
+    }
 }
 
 // Almost flat over the unit square: 0 at its sides, pi at its diagonals, the edges 03 and 12.
