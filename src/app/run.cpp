@@ -70,6 +70,7 @@ struct Place {
     double next_dt;       // [s]
     int steps_given = 0;  // time.steps as the case file has it (same_case.h)
     bool owes_frame = false;  // of this step: the run was interrupted before it was written
+    FileContents files = {};  // that the case names, as they were read
 };
 
 bool at_end(const Place& place, const TimePlan& plan) {
@@ -82,6 +83,7 @@ bool is_framed(const Place& place, const Case& given) {
 }
 
 constexpr const char* steps_given_name = "steps_given";
+constexpr std::string_view contents_of = "contents of ";  // before the key that names the file
 
 /// What a checkpoint keeps of a free body, by name.
 template <class State, class Visit>
@@ -130,7 +132,10 @@ Place resume(Case& given, const RunOptions& options, const Watch* watch) {
     const int steps_asked = given.time.steps;
     const auto known = saved.values.find(steps_given_name);
     const double had = known != saved.values.end() ? known->second : 0;
-    go_on_with(given, {saved.case_text, static_cast<int>(had), saved.time}, options.case_file.string(),
+    FileContents files;
+    for (const auto& [name, value] : saved.values)
+        if (name.starts_with(contents_of)) files[name.substr(contents_of.size())] = value;
+    go_on_with(given, {saved.case_text, static_cast<int>(had), saved.time, files}, options.case_file.string(),
                options.out.string());
     std::vector<FreeState> free = free_states(given, saved.values);
     std::vector<BodyPlace> places;
@@ -142,12 +147,14 @@ Place resume(Case& given, const RunOptions& options, const Watch* watch) {
                 saved.next_dt,
                 steps_asked};
     place.owes_frame = is_framed(place, given) && !has_frame(options.out, place.step);
+    place.files = std::move(files);
     return place;
 }
 
 Checkpoint checkpoint_of(const Place& place, const Case& given) {
     std::map<std::string, double> values = values_of(place.state.free);
     values.emplace(steps_given_name, place.steps_given);
+    for (const auto& [key, contents] : place.files) values.emplace(std::string(contents_of) + key, contents);
     return {.mesh = place.state.moving.reference(),
             .fields = place.state.fields,
             .time = place.state.moving.time(),
@@ -271,7 +278,8 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& 
 Place begin(const Case& given, const Ranks& ranks, Progress& progress) {
     const auto start_time = std::chrono::steady_clock::now();
     ranks.watch->progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
-    Place place{start(given, ranks), 0, given.time.end / given.time.steps, given.time.steps, true};
+    Place place{start(given, ranks), 0, given.time.end / given.time.steps, given.time.steps, true,
+                contents_of_files(to_toml(given))};
     ranks.watch->progress = {};
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
     progress.say(mesh_line(place.state.moving.reference(), taken.count()));

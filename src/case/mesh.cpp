@@ -5,6 +5,7 @@
 #include <kropla/base/error.h>
 #include <kropla/base/predicates.h>
 #include <kropla/domain/of_mesh.h>
+#include <kropla/domain/words.h>
 #include <kropla/io/fixed_mesh.h>
 #include <kropla/io/mesh_file.h>
 #include <kropla/mesh/topology.h>
@@ -83,6 +84,30 @@ Mesh with_patches(Mesh mesh) {
     return mesh;
 }
 
+/// Bodies are apart from each other and from the boundary: no vertex is of two of these.
+void check_apart(const CaseTable& domain, const std::string& file, const Mesh& mesh, const std::vector<Body>& bodies) {
+    Array<Vertex, Region> of(mesh.position.size());
+    const auto name = [&](Region body) { return toml_text(bodies[as_size(body.value - 1)].name); };
+    const auto refuse = [&](Region body, const std::string& other, Vertex v) {
+        domain.refuse("mesh", fmt::format("{}: body {} touches {} at {}; bodies are to be apart from each other and from the boundary",
+                                          file, name(body), other, place_words(mesh.position[v])));
+    };
+    for (const Tet t : mesh.tets.indices()) {
+        const Region region = mesh.region[t];
+        if (region == surroundings) continue;
+        for (const Vertex v : mesh.tets[t]) {
+            if (of[v].exists() && of[v] != region) refuse(of[v], "body " + name(region), v);
+            of[v] = region;
+        }
+    }
+    for (const Tet t : mesh.tets.indices())
+        for (int corner = 0; corner < 4; ++corner) {
+            if (mesh.neighbour[t][as_size(corner)].exists()) continue;
+            for (const Vertex v : facet_vertices(mesh, {t, corner}))
+                if (of[v].exists()) refuse(of[v], "the boundary", v);
+        }
+}
+
 }  // namespace
 
 CaseMesh read_case_mesh(const CaseTable& domain, const std::filesystem::path& file) {
@@ -143,6 +168,7 @@ void take_case_mesh(const CaseTable& domain, const CaseMesh& brought, const std:
             domain.refuse("mesh", fmt::format("{}: body {}: {}", brought.file, toml_text(given.domain.bodies[body].name), error.what()));
         }
     }
+    check_apart(domain, brought.file, *mesh, given.domain.bodies);
     given.mesh = BroughtMesh{brought.file, mesh, brought.notes, faces_of_patches(*mesh, brought.cells)};
 }
 

@@ -2,6 +2,7 @@
 
 #include "case/parameters.h"
 #include <kropla/base/error.h>
+#include "io/file.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -10,7 +11,7 @@
 #include <charconv>
 #include <cctype>
 #include <cmath>
-#include <map>
+#include <cstdint>
 
 namespace kropla {
 namespace {
@@ -26,10 +27,18 @@ std::string plain_formula(std::string text) {
     return error == std::errc() && stop == end ? fmt::format("{}", number) : text;
 }
 
+bool names_file(std::string_view key) { return key.ends_with(".file") || key.ends_with(".mesh"); }
+
 /// Is the value a name, rather than a formula?
 bool is_name(std::string_view key) {
-    return key.ends_with(".name") || key.ends_with(".shape") || key.ends_with(".file") || key.ends_with(".region") ||
-           key.ends_with(".mesh");
+    return key.ends_with(".name") || key.ends_with(".shape") || key.ends_with(".region") || names_file(key);
+}
+
+/// [Fowler, Noll, Vo] FNV-1a; as many bits of it as a double holds.
+double fingerprint(std::string_view bytes) {
+    std::uint64_t hash = 14695981039346656037u;
+    for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211u;
+    return static_cast<double>(hash >> 11);
 }
 
 /// How a value is written, and which number that is: empty if it is none.
@@ -120,11 +129,26 @@ std::vector<CaseDifference> differences(std::string_view first, std::string_view
     return found;
 }
 
+FileContents contents_of_files(std::string_view case_text) {
+    FileContents contents;
+    const Values values(case_text);
+    for (const auto& [key, value] : values.by_key())
+        if (names_file(key)) contents[key] = fingerprint(read_file(value.wording));
+    return contents;
+}
+
 void go_on_with(Case& given, const RunSoFar& run, const std::string& file, const std::string& folder) {
-    for (const auto& [key, had, now] : differences(run.case_text, to_toml(given))) {
+    const std::string text = to_toml(given);
+    const Values had(run.case_text), has(text);
+    for (const auto& [key, contents] : contents_of_files(text))
+        if (const auto of_run = run.files.find(key);
+            of_run != run.files.end() && of_run->second != contents && are_same(had.of(key), has.of(key)))
+            throw CaseError(fmt::format("{}: {}: {} is not the file that the run in {} was begun with; with that it goes on, "
+                                        "or begins anew with --force", file, key, has.of(key).wording, folder));
+    for (const auto& [key, was, now] : differences(run.case_text, text)) {
         if (key == "output.every" || key == "time.end" || key == "time.steps") continue;
         throw CaseError(fmt::format("{}: {}: is {} here, but {} in the run that {} holds; only time.end and output.every "
-                                    "may change", file, key, now, had, folder));
+                                    "may change", file, key, now, was, folder));
     }
     go_on_to_end(given, run, file);
 }

@@ -6,7 +6,9 @@
 #include "case/mesh_size.h"
 #include <kropla/adapt/moving_mesh.h>
 #include <kropla/base/error.h>
+#include <kropla/domain/words.h>
 #include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 #include <kropla/mesh/verify.h>
 #include <kropla/step/stuck.h>
 #include "program.h"
@@ -146,6 +148,39 @@ TEST_F(CaseMeshTest, RefusesInOneLine) {
               "case.toml: domain.mesh (line 2): a.msh: body \"rotor\": it reaches the bound");
 }
 
+TEST_F(CaseMeshTest, BodiesThatTouchAreRefusedWithThePlace) {
+    FileCells cells = named_cube(6);
+    const auto middle = [&](Tet t) {
+        const auto& v = cells.tets[t];
+        return (cells.position[v[0]] + cells.position[v[1]] + cells.position[v[2]] + cells.position[v[3]]) / 4;
+    };
+    for (const Tet t : cells.region.indices())
+        if (cells.region[t] != surroundings && middle(t).x > 3e-3) cells.region[t] = Region(2);
+    write_mesh_file(folder / "a.msh", cells);
+    const std::string message = refusal(replaced("[time]", "[[body]]\nname = \"b\"\nshape = \"region\"\nregion = 2\n[time]"));
+    EXPECT_TRUE(message.starts_with("case.toml: domain.mesh (line 2): a.msh: body \"rotor\" touches body \"b\" at (0.003")) << message;
+    EXPECT_TRUE(message.ends_with(") m; bodies are to be apart from each other and from the boundary")) << message;
+}
+
+TEST_F(CaseMeshTest, ABodyThatTouchesTheBoundaryIsRefusedWithThePlace) {
+    FileCells cells = named_cube(6);
+    const Mesh mesh = make_mesh(cells.position, cells.tets, cells.region);
+    std::vector<Vertex> there;  // of a cell that has one vertex at the boundary, which joins the body
+    for (const Tet t : cells.region.indices()) {
+        there.clear();
+        for (Vertex v : cells.tets[t])
+            if (constraint(mesh, v, ball(mesh, v)).patches != 0) there.push_back(v);
+        if (there.size() != 1) continue;
+        cells.region[t] = Region(1);
+        break;
+    }
+    ASSERT_EQ(there.size(), 1u);
+    write_mesh_file(folder / "a.msh", cells);
+    EXPECT_EQ(refusal(case_text), "case.toml: domain.mesh (line 2): a.msh: body \"rotor\" touches the boundary at " +
+                                      place_words(cells.position[there[0]]) +
+                                      "; bodies are to be apart from each other and from the boundary");
+}
+
 TEST_F(CaseMeshTest, FacesMayBeCalledByTheNamesOfPatches) {
     const auto& with = heated;
     const std::string by_key = to_toml(read(with("x_min = { value = 400 }\n")));
@@ -205,6 +240,20 @@ TEST(RunInAMesh, GoesOnWhereItWasStopped) {
     EXPECT_EQ(kropla_program(folder, "check d").code, 0);
     EXPECT_EQ(kropla_program(folder, "mesh whole.toml -o m.mesh").code, 0);
     EXPECT_EQ(read_mesh_file(folder.path / "m.mesh").region_names, (Names{{0, "surroundings"}, {1, "rotor"}}));
+}
+
+TEST(RunInAMesh, DoesNotGoOnInAnother) {
+    const TemporaryFolder folder;
+    write_mesh_file(folder.path / "a.msh", named_cube(6));
+    put(folder.path / "a.toml", replaced("end = 0.01\nsteps = 2", "end = 0.005\nsteps = 1"));
+    put(folder.path / "b.toml", replaced("end = 0.01\nsteps = 2", "end = 0.01\nsteps = 2"));
+    ASSERT_EQ(kropla_program(folder, "run a.toml --out d").code, 0);
+    write_mesh_file(folder.path / "a.msh", named_cube(7));
+    const Outcome resumed = kropla_program(folder, "run b.toml --out d --resume");
+    EXPECT_EQ(resumed.code, 2);
+    EXPECT_NE(resumed.err.find("b.toml: domain.mesh: "), std::string::npos) << resumed.err;
+    EXPECT_NE(resumed.err.find("a.msh is not the file that the run in d was begun with; with that it goes on, or begins anew with "
+                               "--force\n"), std::string::npos) << resumed.err;
 }
 
 TEST(SizeOfAMesh, OneOfARegularGridIsItsEdge) {
