@@ -2,6 +2,11 @@
 
 #include <kropla/base/vec3.h>
 
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+
 /// Before a function: it is compiled for processors of several generations, and at run time the one is taken
 /// that suits. None of them fuses or reorders arithmetic, so that the bits are the same.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
@@ -84,5 +89,21 @@ inline void set(FourVec3& fours, std::size_t which, const Vec3& a) {
     fours.z.set(which, a.z);
 }
 inline Vec3 one_of(const FourVec3& fours, std::size_t which) { return {fours.x[which], fours.y[which], fours.z[which]}; }
+
+/// What `of` says of each of four things, as many numbers or places.
+template <class Thing, class Of>
+auto together(const std::array<Thing, 4>& things, const Of& of) {
+    const auto &a = of(things[0]), &b = of(things[1]), &c = of(things[2]), &d = of(things[3]);
+    std::array<Four, std::tuple_size_v<std::remove_cvref_t<decltype(a)>>> fours;
+    for (std::size_t i = 0; i < fours.size(); ++i) fours[i] = Four(Four::Register{a[i], b[i], c[i], d[i]});
+    return fours;
+}
+template <class Thing, class Of>
+auto places_together(const std::array<Thing, 4>& things, const Of& of) {
+    const auto &a = of(things[0]), &b = of(things[1]), &c = of(things[2]), &d = of(things[3]);
+    std::array<FourVec3, std::tuple_size_v<std::remove_cvref_t<decltype(a)>>> fours;
+    for (std::size_t i = 0; i < fours.size(); ++i) fours[i] = four_of(a[i], b[i], c[i], d[i]);
+    return fours;
+}
 
 }  // namespace kropla

@@ -50,7 +50,9 @@ SizeField size_of_mesh(const Mesh& mesh, const Domain& domain) {
     if (on_surfaces.empty()) return {.surface = size.far, .growth = 0, .far = size.far};
     size.surface = quantile(on_surfaces, 0.5);
     size.far = std::max(size.far, size.surface);
-    const Snapshot at = snapshot(domain, 0);
+    Domain sized = domain;
+    sized.size = size;
+    const Snapshot at = snapshot(sized, 0);
     const std::size_t stride = edges.size() / most_edges + 1;
     for (std::size_t i = 0; i < edges.size(); i += stride) {
         const double away = distance_to_bodies(at, edges[i].middle);

@@ -31,8 +31,10 @@
 #include "base/four.h"
 #include <kropla/mesh/cells.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace kropla {
 namespace {
@@ -44,17 +46,20 @@ constexpr double of_inverse_estimate = 9;  // [-] C: on a line tau_M is h^2 / (1
 // solution, where steps are large, Newton's method does not find it so.
 constexpr double rate_rules = 0.7;
 
-using Matrix3 = std::array<Vec3, 3>;  // by rows
+template <class Number>
+using Matrix3 = std::array<Vector3<Number>, 3>;  // by rows
 
-template <std::size_t n>
+/// A cell of n corners; or, if the number is a Four, four of them.
+template <std::size_t n, class Number = double>
 struct FlowCell {
-    Corners<n> x;
-    std::array<Vertex, n> vertex;
-    std::array<Vec3, n> velocity, carrying, inertia;  // u, a, rho du/dt - f
-    std::array<double, n> pressure;
-    double density, viscosity, per_time;
+    Corners<n, Number> x;
+    std::array<Vertex, n> vertex;                   // of one alone
+    Corners<n, Number> velocity, carrying, inertia;  // u, a, rho du/dt - f
+    std::array<Number, n> pressure;
+    Number density, viscosity;
+    double per_time;
     bool convection;
-    bool expands;                      // the density depends on the temperature; only then:
+    bool expands;                      // the density depends on the temperature; four at once never do; only then:
     std::array<Vec3, n> passing;       // u - w
     std::array<double, n> in_terms;    // of the vertex's density, that of the cell
     std::array<double, n> densities;
@@ -66,6 +71,18 @@ double mean_at(const Array<Vertex, double>& values, const std::array<Vertex, n>&
     double sum = 0;
     for (Vertex v : vertices) sum += values[v];
     return sum / static_cast<double>(n);
+}
+
+/// What is of cells alone whose density depends on the temperature.
+template <std::size_t n>
+void gather_expansion(const FlowStage& stage, const FlowMaterial& material, FlowCell<n>& cell) {
+    cell.density_rate = material.density_rate.empty() ? 0 : mean_at(material.density_rate, cell.vertex);
+    cell.densities = at_corners(material.densities, cell.vertex);
+    for (std::size_t i = 0; i < n; ++i) {
+        cell.passing[i] = cell.velocity[i];
+        if (!stage.mesh_velocity.empty()) cell.passing[i] -= stage.mesh_velocity[cell.vertex[i]];
+        cell.in_terms[i] = cell.density / cell.densities[i];
+    }
 }
 
 template <std::size_t n, class Name>
@@ -83,7 +100,6 @@ FlowCell<n> gather(const FlowStage& stage, const Name& name) {
     cell.per_time = stage.per_time;
     cell.convection = stage.convection;
     cell.expands = varies;
-    cell.density_rate = material.density_rate.empty() ? 0 : mean_at(material.density_rate, cell.vertex);
     for (std::size_t i = 0; i < n; ++i) {
         const Vertex v = cell.vertex[i];
         cell.x[i] = stage.position[v];
@@ -92,93 +108,102 @@ FlowCell<n> gather(const FlowStage& stage, const Name& name) {
         cell.pressure[i] = within != nullptr && stage.upper[v] == region ? (*within)[v] : stage.guess.pressure[v];
         cell.carrying[i] = stage.convection ? u : Vec3{};
         if (!stage.mesh_velocity.empty()) cell.carrying[i] -= stage.mesh_velocity[v];
-        const double density = varies ? material.densities[v] : cell.density;
-        cell.passing[i] = stage.mesh_velocity.empty() ? u : u - stage.mesh_velocity[v];
-        cell.in_terms[i] = cell.density / density;
-        cell.densities[i] = density;
-        cell.inertia[i] = -density * stage.gravity;
+        cell.inertia[i] = -(varies ? material.densities[v] : cell.density) * stage.gravity;
         if (stage.per_time > 0) cell.inertia[i] += cell.density * stage.per_time * (u - stage.old[v]);
         if (!material.force.empty()) cell.inertia[i] -= material.force[v];
     }
+    if (varies) gather_expansion(stage, material, cell);
     return cell;
 }
 
 /// The gradients of the coordinates of the reference cell, with the weights of their squares in the metric
 /// tensor.
-template <std::size_t n>
+template <std::size_t n, class Number>
 struct Directions {
     static constexpr std::size_t count = 4;
-    std::array<Vec3, count> gradient;  // [1/m]
+    std::array<Vector3<Number>, count> gradient;  // [1/m]
     static constexpr std::array<double, count> weight =
         n == 4 ? std::array<double, 4>{0.75, 0.75, 0.75, 0.75}
                : std::array<double, 4>{2.0 / 3, 2.0 / 3, 2.0 / 3, 4};
 };
 
-Directions<4> directions(const std::array<Vec3, 4>& gradient) { return {gradient}; }
+template <class Number>
+Directions<4, Number> directions(const Corners<4, Number>& gradient) { return {gradient}; }
 
-Directions<6> directions(const std::array<Vec3, 6>& gradient) {
+Directions<6, double> directions(const Corners<6>& gradient) {
     return {{gradient[0] + gradient[3], gradient[1] + gradient[4], gradient[2] + gradient[5],
              gradient[3] + gradient[4] + gradient[5]}};
 }
 
+template <class Number>
 struct Times {
-    double momentum;  // tau_M [m^3 s/kg]
-    double volume;    // tau_C [Pa s]
+    Number momentum;  // tau_M [m^3 s/kg]
+    Number volume;    // tau_C [Pa s]
 };
 
-template <std::size_t n>
-Times intrinsic_times(const FlowCell<n>& cell, const Directions<n>& of, const Vec3& carrying) {
-    double crossing = 0;  // a.G.a
-    Vec3 squares, products;  // G on its diagonal and off it
+template <std::size_t n, class Number>
+Times<Number> intrinsic_times(const FlowCell<n, Number>& cell, const Directions<n, Number>& of, const Vector3<Number>& carrying) {
+    Number crossing = 0;  // a.G.a
+    Vector3<Number> squares, products;  // G on its diagonal and off it
     for (std::size_t c = 0; c < of.count; ++c) {
-        const Vec3 &g = of.gradient[c], weighted = of.weight[c] * g;
-        const double across = dot(carrying, g);
+        const Vector3<Number> &g = of.gradient[c], weighted = of.weight[c] * g;
+        const Number across = dot(carrying, g);
         crossing += of.weight[c] * across * across;
         squares += {weighted.x * g.x, weighted.y * g.y, weighted.z * g.z};
         products += {weighted.y * g.z, weighted.z * g.x, weighted.x * g.y};
     }
-    const double trace = squares.x + squares.y + squares.z;
-    const double kinematic = cell.viscosity / cell.density;
-    const double viscous =
+    const Number trace = squares.x + squares.y + squares.z;
+    const Number kinematic = cell.viscosity / cell.density;
+    const Number viscous =
         of_inverse_estimate * kinematic * kinematic * (squared_norm(squares) + 2 * squared_norm(products));
-    return {1 / (std::sqrt(4 * cell.per_time * cell.per_time + crossing + viscous) * cell.density),
-            crossing > 0 ? cell.density * crossing / (std::sqrt(crossing + viscous) * trace) : 0};
+    return {1 / (square_root(4 * cell.per_time * cell.per_time + crossing + viscous) * cell.density),
+            where_positive(crossing, Number(cell.density * crossing / (square_root(crossing + viscous) * trace)))};
 }
 
 /// The means over the part of a cell that point k stands for of phi_i times what has these values at the
 /// corners.
-template <std::size_t n>
-std::array<Vec3, n> means_with_shapes(const std::array<Vec3, n>& values, const Vec3& mean, std::size_t k) {
-    std::array<Vec3, n> means;
+template <std::size_t n, class Number>
+Corners<n, Number> means_with_shapes(const Corners<n, Number>& values, const Vector3<Number>& mean, std::size_t k) {
+    Corners<n, Number> means;
     for (std::size_t i = 0; i < n; ++i)  // the products of shape_means, written out
         means[i] = n == 4 ? 0.05 * (4 * mean + values[i]) : shape_means<n>[k].value[i] * mean;
     return means;
 }
 
 /// What is known at a point of a cell, for the part of it that the point stands for.
-template <std::size_t n>
+template <std::size_t n, class Number = double>
 struct FlowPoint {
-    double volume;
+    Number volume;
     const ShapeMeans<n>& means;
-    std::array<Vec3, n> gradient;  // of phi_i
-    Matrix3 du;                    // row m: grad u_m
-    Vec3 dp, residual;             // grad p, r
-    double divergence, pressure;
-    double missing;                // of the divergence: the residual of continuity
-    Vec3 passing, thins;           // mean u - w; grad rho / rho
-    Times tau;
-    std::array<Vec3, n> carried;   // mean of phi_i a
-    std::array<Vec3, n> inertia;   // mean of phi_i (rho du/dt - f)
-    std::array<double, n> along;   // mean a.grad phi_i
+    Corners<n, Number> gradient;   // of phi_i
+    Matrix3<Number> du;            // row m: grad u_m
+    Vector3<Number> dp, residual;  // grad p, r
+    Number divergence, pressure;
+    Number missing;                // of the divergence: the residual of continuity
+    Vec3 passing, thins;           // mean u - w; grad rho / rho: where the density depends on the temperature
+    Times<Number> tau;
+    Corners<n, Number> carried;    // mean of phi_i a
+    Corners<n, Number> inertia;    // mean of phi_i (rho du/dt - f)
+    std::array<Number, n> along;   // mean a.grad phi_i
 };
 
 template <std::size_t n>
-FlowPoint<n> flow_point(const FlowCell<n>& cell, const CellPoint<n>& at, std::size_t k) {
-    FlowPoint<n> point{at.volume, shape_means<n>[k], {}, {}, {}, {}, 0, 0, 0, {}, {}, {}, {}, {}, {}};
-    Vec3 carrying, inertia;
-    const double per_volume = 1 / at.volume;
+void find_expansion(const FlowCell<n>& cell, FlowPoint<n>& point) {
     for (std::size_t i = 0; i < n; ++i) {
-        const Vec3 g = point.gradient[i] = per_volume * at.volume_gradient[i];
+        point.passing += point.means.value[i] * cell.passing[i];
+        point.thins += cell.densities[i] / cell.density * point.gradient[i];
+    }
+    point.missing += cell.density_rate / cell.density + dot(point.passing, point.thins);
+}
+
+template <std::size_t n, class Number>
+FlowPoint<n, Number> flow_point(const FlowCell<n, Number>& cell, const CellPoint<n, Number>& at, std::size_t k) {
+    using Vector = Vector3<Number>;
+    FlowPoint<n, Number> point{at.volume, shape_means<n>[k], {}, {}, {}, {}, 0, 0, 0, {}, {}, {}, {}, {}, {}};
+    Vector carrying, inertia;
+    const Number per_volume = 1 / at.volume;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vector g = point.gradient[i] = per_volume * at.volume_gradient[i];
         for (int m = 0; m < 3; ++m) point.du[static_cast<std::size_t>(m)] += cell.velocity[i][m] * g;
         const double value = point.means.value[i];
         point.dp += cell.pressure[i] * g;
@@ -187,43 +212,40 @@ FlowPoint<n> flow_point(const FlowCell<n>& cell, const CellPoint<n>& at, std::si
         inertia += value * cell.inertia[i];
     }
     point.missing = point.divergence = point.du[0].x + point.du[1].y + point.du[2].z;
-    if (cell.expands) {
-        for (std::size_t i = 0; i < n; ++i) {
-            point.passing += point.means.value[i] * cell.passing[i];
-            point.thins += cell.densities[i] / cell.density * point.gradient[i];
-        }
-        point.missing += cell.density_rate / cell.density + dot(point.passing, point.thins);
-    }
-    const Vec3 convected{dot(carrying, point.du[0]), dot(carrying, point.du[1]), dot(carrying, point.du[2])};
+    if constexpr (std::is_same_v<Number, double>)
+        if (cell.expands) find_expansion(cell, point);
+    const Vector convected{dot(carrying, point.du[0]), dot(carrying, point.du[1]), dot(carrying, point.du[2])};
     point.residual = cell.density * convected + inertia + point.dp;
     point.tau = intrinsic_times(cell, directions(point.gradient), carrying);
     for (std::size_t i = 0; i < n; ++i) point.along[i] = dot(carrying, point.gradient[i]);
-    point.carried = means_with_shapes(cell.carrying, carrying, k);
-    point.inertia = means_with_shapes(cell.inertia, inertia, k);
+    point.carried = means_with_shapes<n>(cell.carrying, carrying, k);
+    point.inertia = means_with_shapes<n>(cell.inertia, inertia, k);
     return point;
 }
 
-template <std::size_t n>
-void add_residual(const FlowCell<n>& cell, const FlowPoint<n>& at,
-                  std::array<double, block_size * n>& residual) {
-    const Matrix3& du = at.du;
-    const double isotropic = at.tau.volume * at.missing - at.pressure;
-    const Matrix3 stress = {
-        cell.viscosity * (du[0] + Vec3{du[0].x, du[1].x, du[2].x}) + Vec3{isotropic, 0, 0},
-        cell.viscosity * (du[1] + Vec3{du[0].y, du[1].y, du[2].y}) + Vec3{0, isotropic, 0},
-        cell.viscosity * (du[2] + Vec3{du[0].z, du[1].z, du[2].z}) + Vec3{0, 0, isotropic}};
+template <std::size_t n, class Number>
+void add_residual(const FlowCell<n, Number>& cell, const FlowPoint<n, Number>& at,
+                  std::array<Number, block_size * n>& residual) {
+    using Vector = Vector3<Number>;
+    const Matrix3<Number>& du = at.du;
+    const Number isotropic = at.tau.volume * at.missing - at.pressure;
+    const Matrix3<Number> stress = {
+        cell.viscosity * (du[0] + Vector{du[0].x, du[1].x, du[2].x}) + Vector{isotropic, 0, 0},
+        cell.viscosity * (du[1] + Vector{du[0].y, du[1].y, du[2].y}) + Vector{0, isotropic, 0},
+        cell.viscosity * (du[2] + Vector{du[0].z, du[1].z, du[2].z}) + Vector{0, 0, isotropic}};
     for (std::size_t i = 0; i < n; ++i) {
-        const Vec3 &g = at.gradient[i], &carried = at.carried[i];
-        const Vec3 convected{dot(carried, du[0]), dot(carried, du[1]), dot(carried, du[2])};
-        const Vec3 sum = cell.density * convected + at.inertia[i] +
-                         Vec3{dot(stress[0], g), dot(stress[1], g), dot(stress[2], g)} +
-                         at.tau.momentum * cell.density * at.along[i] * at.residual;
+        const Vector &g = at.gradient[i], &carried = at.carried[i];
+        const Vector convected{dot(carried, du[0]), dot(carried, du[1]), dot(carried, du[2])};
+        const Vector sum = cell.density * convected + at.inertia[i] +
+                           Vector{dot(stress[0], g), dot(stress[1], g), dot(stress[2], g)} +
+                           at.tau.momentum * cell.density * at.along[i] * at.residual;
         for (int m = 0; m < 3; ++m)
             residual[block_size * i + static_cast<std::size_t>(m)] += at.volume * sum[m];
-        const double steered = at.tau.momentum * dot(g, at.residual);
-        residual[block_size * i + 3] +=
-            at.volume * (cell.expands ? cell.in_terms[i] * (steered - dot(at.passing, g))
-                                      : at.means.value[i] * at.divergence + steered);
+        const Number steered = at.tau.momentum * dot(g, at.residual);
+        Number gained = at.means.value[i] * at.divergence + steered;
+        if constexpr (std::is_same_v<Number, double>)
+            if (cell.expands) gained = cell.in_terms[i] * (steered - dot(at.passing, g));
+        residual[block_size * i + 3] += at.volume * gained;
     }
 }
 
@@ -263,7 +285,7 @@ void put_derivative(const FlowCell<n>& cell, const FlowPoint<n>& at, CellBlocks<
         const double weight = tau * density * at.along[i];
         const Vec3 viscous = volume * cell.viscosity * gi, steered = volume * tau * gi;
         const Four compressed = four(volume * at.tau.volume * gi, expands ? 0 : volume * at.means.value[i]);
-        const Four terms = four({1, 1, 1}, cell.in_terms[i]);
+        const Four terms = expands ? four({1, 1, 1}, cell.in_terms[i]) : Four(1);
         const auto in_terms = [&](const Four& column) { return expands ? terms * column : column; };
         const Vec3 turned = newton * tau * (gi.x * at.du[0] + gi.y * at.du[1] + gi.z * at.du[2]);
         const Four turning = turns ? volume * tau * density * four(at.residual, 0) : Four(0);
@@ -297,7 +319,7 @@ void add_open_facet(const FlowStage& stage, const FlowCell<4>& cell, const CellP
                     CellBlocks<4>& blocks) {
     const Vec3 area = -3 * at.volume_gradient[corner];  // out of the domain
     std::array<Vec3, 4> gradient;
-    Matrix3 du = {};
+    Matrix3<double> du = {};
     for (std::size_t j = 0; j < 4; ++j) {
         gradient[j] = at.volume_gradient[j] / at.volume;
         for (int m = 0; m < 3; ++m) du[static_cast<std::size_t>(m)] += cell.velocity[j][m] * gradient[j];
@@ -342,9 +364,21 @@ void add_passing(const FlowCell<4>& cell, const CellPoint<4>& at, std::size_t co
     }
 }
 
-template <std::size_t n, class Name>
-void add_cell_points(const FlowStage& stage, const Name& name, bool derivative, CellBlocks<n>& blocks) {
-    const FlowCell<n> cell = gather<n>(stage, name);
+/// What passes the facets of a tet on faces of the box, and what acts on those that are open.
+void add_facets(const FlowStage& stage, Tet t, const FlowCell<4>& cell, bool derivative, CellBlocks<4>& blocks) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        const Patch patch = stage.mesh.patch[t][corner];
+        if (!patch.exists() || patch.value >= box_faces) continue;
+        const auto face = static_cast<std::size_t>(patch.value);
+        if (!cell.expands && !stage.open[face]) continue;
+        const CellPoint<4> at = linear_tet(cell.x);
+        if (cell.expands) add_passing(cell, at, corner, derivative, blocks);
+        if (stage.open[face]) add_open_facet(stage, cell, at, corner, stage.open_pressure[face], derivative, blocks);
+    }
+}
+
+template <std::size_t n>
+void add_cell_points(const FlowCell<n>& cell, bool derivative, CellBlocks<n>& blocks) {
     const CellPoints<n> points = cell_points(cell.x);
     blocks.residual.fill(0);
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -359,28 +393,44 @@ void add_cell_points(const FlowStage& stage, const Name& name, bool derivative, 
             else put_derivative<true, false>(cell, point, blocks);
         }
     }
-    if constexpr (n == 4) {
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Patch patch = stage.mesh.patch[name][corner];
-            if (!patch.exists() || patch.value >= box_faces) continue;
-            if (cell.expands) add_passing(cell, points[0], corner, derivative, blocks);
-            if (!stage.open[static_cast<std::size_t>(patch.value)]) continue;
-            add_open_facet(stage, cell, points[0], corner,
-                           stage.open_pressure[static_cast<std::size_t>(patch.value)], derivative, blocks);
-        }
-    }
+}
+
+using FourTets = std::array<FlowCell<4>, 4>;
+
+/// Of which none expands.
+FlowCell<4, Four> four_of(const FourTets& cells) {
+    const auto numbers = [&](const auto& of) { return Four(Four::Register{of(cells[0]), of(cells[1]), of(cells[2]), of(cells[3])}); };
+    return {.x = places_together(cells, [](const auto& cell) -> auto& { return cell.x; }),
+            .vertex = {},
+            .velocity = places_together(cells, [](const auto& cell) -> auto& { return cell.velocity; }),
+            .carrying = places_together(cells, [](const auto& cell) -> auto& { return cell.carrying; }),
+            .inertia = places_together(cells, [](const auto& cell) -> auto& { return cell.inertia; }),
+            .pressure = together(cells, [](const auto& cell) -> auto& { return cell.pressure; }),
+            .density = numbers([](const auto& cell) { return cell.density; }),
+            .viscosity = numbers([](const auto& cell) { return cell.viscosity; }),
+            .per_time = cells[0].per_time,
+            .convection = cells[0].convection,
+            .expands = false,
+            .passing = {},
+            .in_terms = {},
+            .densities = {},
+            .density_rate = 0};
 }
 
 template <std::size_t n, class Name>
-double most_crossed(const FlowStage& stage, const Name& name) {
-    const FlowCell<n> cell = gather<n>(stage, name);
-    const CellPoints<n> points = cell_points(cell.x);
-    double most = 0;
+CrossingRates most_crossed(const FlowStage& stage, const Name& name) {
+    const auto vertices = cell_vertices(stage.mesh, name);
+    const CellPoints<n> points = cell_points(corners(stage.position, stage.mesh, name));
+    const Corners<n> flows = at_corners(stage.guess.velocity, vertices), goes = at_corners(stage.mesh_velocity, vertices);
+    CrossingRates most{0, 0};
     for (std::size_t k = 0; k < points.size(); ++k) {
-        std::array<Vec3, n> gradient;
+        Corners<n> gradient;
         for (std::size_t i = 0; i < n; ++i) gradient[i] = points[k].volume_gradient[i] / points[k].volume;
-        const Vec3 carrying = mean_value(k, cell.carrying);
-        for (const Vec3& g : directions(gradient).gradient) most = std::max(most, std::abs(dot(carrying, g)));
+        const Vec3 flow = mean_value(k, flows), past = flow - mean_value(k, goes);
+        for (const Vec3& g : directions(gradient).gradient) {
+            most.standing = std::max(most.standing, std::abs(dot(flow, g)));
+            most.going = std::max(most.going, std::abs(dot(past, g)));
+        }
     }
     return most;
 }
@@ -389,15 +439,33 @@ double most_crossed(const FlowStage& stage, const Name& name) {
 
 KROPLA_FOR_EACH_PROCESSOR KROPLA_WITH_ITS_CALLS
 void flow_cell(const FlowStage& stage, Tet t, bool derivative, CellBlocks<4>& blocks) {
-    add_cell_points<4>(stage, t, derivative, blocks);
+    const FlowCell<4> cell = gather<4>(stage, t);
+    add_cell_points<4>(cell, derivative, blocks);
+    add_facets(stage, t, cell, derivative, blocks);
 }
 
 KROPLA_FOR_EACH_PROCESSOR KROPLA_WITH_ITS_CALLS
 void flow_cell(const FlowStage& stage, const Prism& prism, bool derivative, CellBlocks<6>& blocks) {
-    add_cell_points<6>(stage, prism, derivative, blocks);
+    add_cell_points<6>(gather<6>(stage, prism), derivative, blocks);
 }
 
-double crossing_rate(const FlowStage& stage, Tet t) { return most_crossed<4>(stage, t); }
-double crossing_rate(const FlowStage& stage, const Prism& prism) { return most_crossed<6>(stage, prism); }
+KROPLA_FOR_EACH_PROCESSOR KROPLA_WITH_ITS_CALLS
+void flow_residuals(const FlowStage& stage, const std::array<Tet, 4>& tets, std::array<CellBlocks<4>, 4>& blocks) {
+    const FourTets cells = {gather<4>(stage, tets[0]), gather<4>(stage, tets[1]), gather<4>(stage, tets[2]),
+                            gather<4>(stage, tets[3])};
+    if (std::ranges::any_of(cells, [](const FlowCell<4>& cell) { return cell.expands; })) {
+        for (std::size_t which = 0; which < 4; ++which) add_cell_points<4>(cells[which], false, blocks[which]);
+    } else {
+        const FlowCell<4, Four> all = four_of(cells);
+        std::array<Four, block_size * 4> residual = {};
+        add_residual(all, flow_point(all, linear_tet(all.x), 0), residual);
+        for (std::size_t which = 0; which < 4; ++which)
+            for (std::size_t i = 0; i < residual.size(); ++i) blocks[which].residual[i] = residual[i][which];
+    }
+    for (std::size_t which = 0; which < 4; ++which) add_facets(stage, tets[which], cells[which], false, blocks[which]);
+}
+
+CrossingRates crossing_rates(const FlowStage& stage, Tet t) { return most_crossed<4>(stage, t); }
+CrossingRates crossing_rates(const FlowStage& stage, const Prism& prism) { return most_crossed<6>(stage, prism); }
 
 }  // namespace kropla

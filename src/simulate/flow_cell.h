@@ -46,8 +46,26 @@ struct FlowStage {
 void flow_cell(const FlowStage& stage, Tet t, bool derivative, CellBlocks<4>& blocks);
 void flow_cell(const FlowStage& stage, const Prism& prism, bool derivative, CellBlocks<6>& blocks);
 
-/// How many of its heights the flow crosses in a cell, per time [1/s].
-[[nodiscard]] double crossing_rate(const FlowStage& stage, Tet t);
-[[nodiscard]] double crossing_rate(const FlowStage& stage, const Prism& prism);
+/// The residuals of four tets at once, to the same bits.
+void flow_residuals(const FlowStage& stage, const std::array<Tet, 4>& tets, std::array<CellBlocks<4>, 4>& blocks);
+
+/// What assemble_blocks is to ask.
+struct FlowKernel {
+    const FlowStage& stage;
+    bool derivative;
+
+    template <class Cell, std::size_t n>
+    void operator()(const Cell& cell, CellBlocks<n>& blocks) const { flow_cell(stage, cell, derivative, blocks); }
+    void operator()(const std::array<Tet, 4>& tets, std::array<CellBlocks<4>, 4>& blocks) const {
+        flow_residuals(stage, tets, blocks);
+    }
+};
+
+/// How many of its heights the flow crosses in a cell, per time [1/s]: as the cell goes with the mesh, and as if it stood.
+struct CrossingRates {
+    double going, standing;
+};
+[[nodiscard]] CrossingRates crossing_rates(const FlowStage& stage, Tet t);
+[[nodiscard]] CrossingRates crossing_rates(const FlowStage& stage, const Prism& prism);
 
 }  // namespace kropla

@@ -40,7 +40,7 @@ bool is_viscous(const Ranks& ranks, const Pattern& pattern, const FlowStage& sta
         const double length =
             std::cbrt(total_volume(cell_points(corners(stage.position, stage.mesh, cell))));
         mine[0] += 1;
-        if (kinematic / (length * length) > viscous_share * (stage.per_time + crossing_rate(stage, cell)))
+        if (kinematic / (length * length) > viscous_share * (stage.per_time + crossing_rates(stage, cell).going))
             mine[1] += 1;
     });
     MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, ranks.communicator);

@@ -352,9 +352,7 @@ private:
 
     void assemble(const FlowStage& stage, bool derivative) {
         heed(ranks_);
-        assemble_blocks(current_, blocks_,
-                        [&](const auto& cell, auto& blocks) { flow_cell(stage, cell, derivative, blocks); }, derivative,
-                        system_, ranks_.watch);
+        assemble_blocks(current_, blocks_, FlowKernel{stage, derivative}, derivative, system_, ranks_.watch);
         surfaces_.add(guess_.velocity, stage.per_time > 0 ? 1 / stage.per_time : 0, derivative, system_);
         if (options_.convection && !steady()) surfaces_.add_passing(guess_.velocity, derivative, system_);
         for (std::size_t r = 0; r < rows().count() && gas_; ++r)
@@ -406,16 +404,13 @@ private:
     [[nodiscard]] double largest_courant() const {
         if (steady()) return 0;
         const std::array<Array<Vertex, double>, 6> none;
-        const Array<Vertex, Vec3> at_rest;
-        const auto stage_on = [&](const Array<Vertex, Vec3>& mesh_velocity) {
-            return FlowStage{current_, current_.position, mesh_velocity, guess_.velocity, guess_, material_,
-                             conditions_.open, none, {}, 0, true, upper()};
-        };
-        const FlowStage going = stage_on(mesh_velocity_), standing = stage_on(at_rest);
+        const FlowStage end{current_, current_.position, mesh_velocity_, guess_.velocity, guess_, material_,
+                            conditions_.open, none, {}, 0, true, upper()};
         double most = 0, all = 0;
         for (const Cells* cells : {&blocks_.pattern.cells, &blocks_.pattern.upper})
             for_each_cell(*cells, [&](const auto& cell) {
-                most = std::max(most, std::min(crossing_rate(going, cell), crossing_rate(standing, cell)));
+                const CrossingRates rates = crossing_rates(end, cell);
+                most = std::max(most, std::min(rates.going, rates.standing));
             });
         MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, ranks_.communicator);
         return dt_ * all;

@@ -328,22 +328,6 @@ bool alike(const FourTets& cells) {
     });
 }
 
-/// What `of` says of each.
-template <class Of>
-std::array<Four, 4> together(const FourTets& cells, const Of& of) {
-    const auto &a = of(cells[0]), &b = of(cells[1]), &c = of(cells[2]), &d = of(cells[3]);
-    std::array<Four, 4> fours;
-    for (std::size_t i = 0; i < 4; ++i) fours[i] = Four(Four::Register{a[i], b[i], c[i], d[i]});
-    return fours;
-}
-template <class Of>
-Corners<4, Four> places_together(const FourTets& cells, const Of& of) {
-    const auto &a = of(cells[0]), &b = of(cells[1]), &c = of(cells[2]), &d = of(cells[3]);
-    Corners<4, Four> fours;
-    for (std::size_t i = 0; i < 4; ++i) fours[i] = four_of(a[i], b[i], c[i], d[i]);
-    return fours;
-}
-
 Cell<4, Four> four_of(const FourTets& cells) {
     const auto conductivity = [&](std::size_t which) { return cells[which].conductivity; };
     return {.x0 = places_together(cells, [](const auto& cell) -> auto& { return cell.x0; }),
