@@ -3,6 +3,7 @@ list(APPEND KROPLA_MESH_FILES
     domain/triangle_tree.cpp
     domain/triangulated_surface.cpp
     domain/surface_width.cpp
+    domain/sharp_edges.cpp
     domain/thin_places.cpp
     domain/of_mesh.cpp
     domain/body_surface.cpp

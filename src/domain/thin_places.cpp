@@ -2,6 +2,7 @@
 
 #include "base/for_all.h"
 #include <kropla/domain/domain.h>
+#include "domain/sharp_edges.h"
 #include "domain/triangulated_surface.h"
 
 #include <algorithm>
@@ -13,7 +14,24 @@
 namespace kropla {
 namespace {
 
-constexpr ThinPlaces::Width nowhere{std::numeric_limits<double>::infinity(), true, {}};
+constexpr ThinPlaces::Width nowhere{std::numeric_limits<double>::infinity(), ThinPlaces::Kind::body, {}};
+
+/// The nearest place on the segment.
+Vec3 nearest_on(const SharpEdges::Segment& segment, const Vec3& x) {
+    const Vec3 along = segment.b - segment.a;
+    return segment.a + std::clamp(dot(x - segment.a, along) / squared_norm(along), 0.0, 1.0) * along;
+}
+
+/// To the nearest of the faces of the box on which the surface ends, but for those on which the course does [m].
+double distance_to_faces(const TriangulatedSurface& surface, const SharpEdges::Course& course, const Vec3& x) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int face = 0; face < 6; ++face) {
+        if (((surface.reached() & ~course.faces) >> face & 1u) == 0) continue;
+        const int axis = face / 2;
+        least = std::min(least, std::abs(x[axis] - (face % 2 == 0 ? surface.extent().min : surface.extent().max)[axis]));
+    }
+    return least;
+}
 
 }  // namespace
 
@@ -33,7 +51,7 @@ struct ThinPlaces::Look {
         Width narrower = nowhere;
         for (const bool inside : {true, false})
             if (const double width = surface.width_between(x, normal, inside, most / neck_share, parallel); width < narrower.across)
-                narrower = {width, inside, x};
+                narrower = {width, inside ? Kind::body : Kind::slot, x};
         const double width = narrower.across;
         if (width < narrowest.across) narrowest = narrower;
         if (!(width < most / neck_share)) return most;
@@ -66,6 +84,44 @@ struct ThinPlaces::Look {
     }
 };
 
+/// A segment of a sharp edge is looked at: how near others are that it does not meet.
+struct ThinPlaces::EdgeLook {
+    const TriangulatedSurface& surface;
+    const SharpEdges& edges;
+    const BoxTree& tree;  // of their segments
+    double least, most;   // [m]
+    int course;
+    std::vector<Place> places = {};
+    Width narrowest = nowhere;
+
+    /// The size there [m].
+    double at(const Vec3& x) {
+        const double beyond = most / gap_share;
+        const double to_edges = tree.least([&](const Extent& box) { return std::sqrt(box.squared_distance(x)); },
+                                           [&](std::size_t i) {
+                                               const SharpEdges::Segment& other = edges.segments[i];
+                                               return edges.meet(course, other.course) ? beyond : distance(nearest_on(other, x), x);
+                                           },
+                                           beyond);
+        const double width =
+            std::min(to_edges, distance_to_faces(surface, edges.courses[static_cast<std::size_t>(course)], x));
+        if (width < narrowest.across) narrowest = {width, Kind::edges, x};
+        return std::clamp(gap_share * width, least, most);
+    }
+
+    /// Halved until it is as short as the sizes found.
+    void halve(const Vec3& a, const Vec3& b) {
+        const Vec3 middle = 0.5 * (a + b);
+        const double size = std::min({at(a), at(middle), at(b)}), length = distance(a, b);
+        if (length > most || (length > size && size < most)) {
+            halve(a, middle);
+            halve(middle, b);
+        } else if (size < most) {
+            places.push_back({{a, b, middle}, size});
+        }
+    }
+};
+
 ThinPlaces::ThinPlaces(const TriangulatedSurface& surface, double least, double most) : most_(most), narrowest_(nowhere) {
     constexpr double alike = 1.2;       // [-] sizes
     constexpr double most_along = 500;  // parts along the surface, however small sizes are
@@ -76,12 +132,21 @@ ThinPlaces::ThinPlaces(const TriangulatedSurface& surface, double least, double 
         looks.push_back({surface, t, least, most, coarse, normalised(cross(corners[1] - corners[0], corners[2] - corners[0]))});
     }
     for_all(looks.size(), [&](std::size_t t) { looks[t].halve(surface.tree().corners(t)); }, 16);
+    const SharpEdges edges(surface);
+    std::vector<Extent> extents;
+    for (const SharpEdges::Segment& segment : edges.segments) extents.push_back(extent({segment.a, segment.b, segment.b}));
+    const BoxTree tree(std::move(extents));
+    std::vector<EdgeLook> edge_looks;
+    for (const SharpEdges::Segment& segment : edges.segments) edge_looks.push_back({surface, edges, tree, least, most, segment.course});
+    for_all(edge_looks.size(), [&](std::size_t e) { edge_looks[e].halve(edges.segments[e].a, edges.segments[e].b); }, 16);
     std::map<int, std::vector<Place>> by_size;
-    for (const Look& look : looks) {
+    const auto take = [&](const auto& look) {
         if (look.narrowest.across < narrowest_.across) narrowest_ = look.narrowest;
         for (const Place& place : look.places)
             by_size[static_cast<int>(std::log(place.size / least) / std::log(alike))].push_back(place);
-    }
+    };
+    std::ranges::for_each(looks, take);
+    std::ranges::for_each(edge_looks, take);
     for (auto& [number, places] : by_size) {
         const double smallest = std::ranges::min_element(places, {}, &Place::size)->size;
         std::vector<Extent> boxes;

@@ -13,7 +13,8 @@ struct Snapshot;            // domain.h
 class TriangulatedSurface;  // triangulated_surface.h
 
 /// Where a surface of triangles faces another part of itself nearby that is nearly parallel to it: across what it bounds, as
-/// at a plate, a fin or a wire, or across what it leaves open, as in a slot. And the sizes that triangles have to have there.
+/// at a plate, a fin or a wire, or across what it leaves open, as in a slot; and where sharp edges of it come near to others
+/// that they do not meet, or to a face of the box that cuts it. And the sizes that triangles have to have there.
 class ThinPlaces {
 public:
     /// Sizes from `least` to `most` [m]. Each triangle of the surface is looked at, and its parts as far as they differ.
@@ -21,12 +22,14 @@ public:
 
     [[nodiscard]] bool any() const { return !groups_.empty(); }
     /// The target size at `x` [m]: where the surface is flat, `gap_share` of the width; where it is round, its radius, but not
-    /// below `neck_share` of the width; from there it rises by `growth` per metre.
+    /// below `neck_share` of the width; at edges `gap_share` of it; from there it rises by `growth` per metre.
     [[nodiscard]] double size(const Vec3& x, double growth) const;
 
+    /// What is thin: the body, what it leaves open, or what is between edges.
+    enum class Kind { body, slot, edges };
     struct Width {
         double across;  // [m], infinite if there is nothing near
-        bool inside;    // across the body; else across what is open
+        Kind kind;
         Vec3 at;
     };
     [[nodiscard]] const Width& narrowest() const { return narrowest_; }
@@ -44,6 +47,7 @@ private:
         BoxTree tree;
     };
     struct Look;
+    struct EdgeLook;
 
     double most_;
     std::vector<Group> groups_;

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -80,6 +82,15 @@ private:
 
     int read_reference() { return std::abs(in_.number<int>("a reference")); }
 
+    Region read_region() {
+        const int reference = in_.number<int>("a reference");
+        regions_.insert(reference);
+        if (reference != 0 && regions_.contains(-reference))
+            in_.fail("has cells of " + std::to_string(std::abs(reference)) + " and of " + std::to_string(-std::abs(reference)) +
+                     ", which would be one region");
+        return Region(std::abs(reference));
+    }
+
     void read_tets() {
         const std::size_t count = in_.count("tets", 5 * least_line);
         cells_.tets.reserve(count);
@@ -87,7 +98,7 @@ private:
             std::array<Vertex, 4> tet;
             for (Vertex& v : tet) v = read_vertex();
             cells_.tets.push_back(tet);
-            cells_.region.push_back(Region(read_reference()));
+            cells_.region.push_back(read_region());
         }
     }
 
@@ -96,7 +107,7 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             LoosePrism prism{.cell = static_cast<int>(i), .vertices = {}, .region = {}, .layer = 0};
             for (Vertex& v : prism.vertices) v = read_vertex();
-            prism.region = Region(read_reference());
+            prism.region = read_region();
             cells_.prisms.push_back(prism);
         }
     }
@@ -141,6 +152,7 @@ private:
     Scanner in_;
     const Watch* watch_;
     FileCells cells_;
+    std::set<int> regions_;  // as the file has them
 };
 
 // ---- writing

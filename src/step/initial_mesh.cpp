@@ -1,11 +1,17 @@
 #include <kropla/step/initial_mesh.h>
 
+#include "adapt/adapt_surface.h"
+#include "adapt/constants.h"
 #include <kropla/adapt/refusal.h>
+#include <kropla/domain/solids.h>
 #include <kropla/generate/generate.h>
+#include "mesh/index_set.h"
 #include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 #include <kropla/step/stuck.h>
 
 #include <cstdio>
+#include <vector>
 
 namespace kropla {
 namespace {
@@ -23,12 +29,46 @@ struct Draft {
     QualitySummary quality;
 };
 
+/// The cells that are new, and those at vertices that are.
+std::vector<Tet> with_those_around(const Mesh& mesh, const Changes& changes) {
+    IndexSet<Tet> cells;
+    for (const Tet t : changes.cells)
+        if (alive(mesh, t)) cells.insert(t);
+    for (const Vertex v : changes.vertices)
+        if (alive(mesh, v))
+            for (const Tet t : ball(mesh, v)) cells.insert(t);
+    return cells.list();
+}
+
+/// Where there are cells at a surface without a layer that are not good because its triangles are not, these are exchanged for
+/// others, with the volume within kept.
+void help_surfaces(Draft& made, const Domain& domain, const Snapshot& at, const AdaptOptions& options) {
+    constexpr double good_at_surfaces = 6;  // [-] R/r
+    std::vector<double> sharp;
+    for (const Body& body : domain.bodies) sharp.push_back(keep_edges(body).sharp);
+    for (int round = 0; round < most_rounds; ++round) {
+        std::vector<Tet> cells = all_tets(made.mesh);
+        if (worst_aspect_ratio(made.mesh, cells) <= good_at_surfaces) return;
+        heed(options.watch, "improving surfaces", static_cast<double>(round) / most_rounds);
+        Changes changes;
+        for (std::size_t body = 0; body < domain.bodies.size(); ++body)
+            if (!domain.bodies[body].layer)
+                changes += improve_surface(made.mesh, {region_of_body(body), 0, sharp[body]}, cells, options);
+        cells = with_those_around(made.mesh, changes);
+        if (cells.empty()) return;
+        changes += improve(made.mesh, cells, at, options);
+        changes += repair(made.mesh, cells, at, options);
+        made.changes += changes;
+    }
+}
+
 Draft draft(const Domain& domain, std::uint64_t seed, const AdaptOptions& options) {
     const Snapshot at = snapshot(domain, 0);
     Draft made{generate_mesh(domain, seed, options.watch), {}, {}};
     heed(options.watch, "improving cells", 0);
     made.changes = improve(made.mesh, all_tets(made.mesh), at, options);
     made.changes += repair(made.mesh, all_tets(made.mesh), at, options);
+    help_surfaces(made, domain, at, options);
     heed(options.watch);
     made.quality = summarise_quality(made.mesh);
     return made;

@@ -5,6 +5,8 @@
 #include "domain/body_surface.h"
 #include <kropla/domain/solids.h>
 #include "domain/surfaces.h"
+#include <kropla/mesh/quality.h>
+#include <kropla/mesh/topology.h>
 #include <kropla/step/initial_mesh.h>
 
 #include <gtest/gtest.h>
@@ -60,7 +62,7 @@ TEST(ThinPlaces, APlateHasACellAcrossWhereverItIs) {
     EXPECT_NEAR(thin.size({1.5, 0, 0.03}, growth), gap_share * thickness + growth * 0.5, 0.02);
     EXPECT_EQ(thin.size({9, 0, 0}, growth), most);
     EXPECT_NEAR(thin.narrowest().across, thickness, 0.01 * thickness);
-    EXPECT_TRUE(thin.narrowest().inside);
+    EXPECT_EQ(thin.narrowest().kind, ThinPlaces::Kind::body);
 }
 
 TEST(ThinPlaces, AThickBodyHasNone) {
@@ -82,7 +84,7 @@ TEST(ThinPlaces, ASlotIsOpenAndThin) {
     const ThinPlaces slot = thin_places(two);
     EXPECT_NEAR(slot.size({-width / 2, 0, 0}, growth), gap_share * width, 0.02 * width);
     EXPECT_EQ(slot.size({-1, 0, 0}, growth), std::min(most, gap_share * width + growth * (1 - width / 2)));
-    EXPECT_FALSE(slot.narrowest().inside);
+    EXPECT_EQ(slot.narrowest().kind, ThinPlaces::Kind::slot);
 }
 
 TEST(ThinPlaces, AnEdgeHoweverSharpIsNone) {
@@ -128,4 +130,46 @@ TEST(ThinPlaces, TooThinForTheLeastSizeIsSaidBefore) {
     Domain finer = domain;
     finer.size.least = 0.05;
     EXPECT_NO_THROW(check_placement(finer, 0, least_gap_in_sizes));
+}
+
+/// A wedge whose edge is cut off: sharp edges this far from each other, along z.
+Triangles blunted_wedge(double width) {
+    return prism_on({{-1, -1, 0}, {1, -1, 0}, {width / 2, 0.5, 0}, {-width / 2, 0.5, 0}}, 1);
+}
+
+TEST(ThinPlaces, SharpEdgesThatAreNearMakeTrianglesSmall) {
+    EXPECT_FALSE(thin_places(prism_on({{-1, -1, 0}, {1, -1, 0}, {0, 0.5, 0}}, 1)).any());
+    EXPECT_FALSE(thin_places(blunted_wedge(1.01 * most / gap_share)).any());
+    const double width = 0.04;
+    const ThinPlaces thin = thin_places(blunted_wedge(width));
+    ASSERT_TRUE(thin.any());
+    EXPECT_EQ(thin.narrowest().kind, ThinPlaces::Kind::edges);
+    EXPECT_NEAR(thin.narrowest().across, width, 1e-15);
+    for (const double z : {-1.0, 0.0, 0.3, 1.0}) EXPECT_NEAR(thin.size({width / 2, 0.5, z}, growth), gap_share * width, 1e-15);
+    EXPECT_NEAR(thin.size({width / 2, 1.5, 0}, growth), gap_share * width + growth, 1e-15);
+}
+
+TEST(ThinPlaces, BodiesWithSharpEdgesThatAreNearAreMeshed) {
+    const Domain domain = with_body(blunted_wedge(0.03), 0.25, 0.0125);
+    const Mesh mesh = initial_mesh(domain, 1);
+    EXPECT_LT(worst_aspect_ratio(mesh, all_tets(mesh)), 1.1 * 6.1);
+    EXPECT_NEAR(region_volume(mesh, Region(1)), 2 * 1.5 * (2 + 0.03) / 2, 1e-13);
+}
+
+TEST(ThinPlaces, SharpEdgesThatAreTooNearAreRefusedWithThePlace) {
+    const auto refused = [](const Domain& domain) -> std::string {
+        try {
+            check_placement(domain, 0, least_gap_in_sizes);
+        } catch (const DomainError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refused(with_body(blunted_wedge(0.002), 0.25, 0.0125)),
+              "body \"plate\" has sharp edges 0.002 m from each other, or from a face of the box, at (-0.001, 0.5, -1) m, too near for "
+              "size.least = 0.0125 m; at most 0.003 m would do");
+    Domain cut = with_body(prism_on({{-1, -5, 0}, {0, -5, 0}, {1, -3.999, 0}, {1, -2, 0}, {-1, -2, 0}}, 1), 0.25, 0.0125);
+    cut.bodies[0].shape = cut_by(cut.box, cut.bodies[0].shape);  // an edge is just above the floor, which cuts its side
+    const std::string said = refused(cut);
+    EXPECT_TRUE(said.starts_with("body \"plate\" has sharp edges 0.001 m from each other, or from a face of the box, at (1, -3.999")) << said;
 }

@@ -1,4 +1,5 @@
 // Surfaces of triangles, sampled anew and meshed.
+#include <kropla/adapt/moving_mesh.h>
 #include "base/random.h"
 #include "domain/surfaces.h"
 #include "generate/creases.h"
@@ -199,6 +200,33 @@ TEST(GenerateMesh, TakesAnyClosedSurface) {
     expect_mesh(domain_with(shape_of(both), 0.5), 27 - 2.744 + 0.216);
     const Shape ring = shape_of(torus(1, 0.4, 40, 20), {0.2, 0.1, -0.3}, turned);
     expect_mesh(domain_with(ring, 0.25), enclosed_volume(resampled(ring, {0.25}), ring.centre));
+}
+
+/// How far vertices of the body's surface are off its shape, at most [m].
+double off_its_shape(const Mesh& mesh, const Shape& shape) {
+    double most = 0;
+    for (const Tet t : all_tets(mesh, Region(1)))
+        for (int corner = 0; corner < 4; ++corner) {
+            const Tet n = mesh.neighbour[t][static_cast<std::size_t>(corner)];
+            if (!n.exists() || mesh.region[n] == Region(1)) continue;
+            for (const Vertex v : facet_vertices(mesh, {t, corner}))
+                most = std::max(most, std::abs(signed_distance(shape, mesh.position[v])));
+        }
+    return most;
+}
+
+TEST(InitialMesh, ExchangesTrianglesOfASurfaceWhereCellsAtItAreBad) {
+    Domain domain;  // a ring, only as thick as it is to be fine
+    domain.box = {{-3, -2, -2}, {3, 2, 2}};
+    domain.bodies.push_back({.name = "ring", .shape = shape_of(torus(0.706, 0.2824, 32, 16), {-1.01, -0.04, 0.925})});
+    for (const auto& [size, ratio] : {std::pair{0.25, 8.29}, {0.26, 7.27}, {0.28, 6.20}}) {
+        domain.size = {.surface = size, .growth = 0.5, .far = 0.8};
+        const Mesh raw = generate_mesh(domain, 1), mesh = initial_mesh(domain, 1);
+        EXPECT_LT(worst_aspect_ratio(mesh, all_tets(mesh)), 1.1 * ratio) << size;
+        EXPECT_NEAR(region_volume(mesh, Region(1)) / region_volume(raw, Region(1)), 1, 1e-12) << size;
+        EXPECT_LT(off_its_shape(mesh, domain.bodies[0].shape), 0.15 * size) << size;
+        EXPECT_NO_THROW(MovingMesh(domain, mesh, 0)) << size;
+    }
 }
 
 TEST(GenerateMesh, TakesThinBodiesAndSlots) {

@@ -25,6 +25,8 @@ TEST(Medit, ReadsReferencesAndNames) {
 }
 
 TEST(Medit, RefusesInOneLine) {
+    EXPECT_EQ(refusal_of("a.mesh", replaced("1 3 2 5 8", "1 3 2 5 -7")),
+              "line 19: has cells of 7 and of -7, which would be one region");
     EXPECT_EQ(refusal_of("a.mesh", "solid"),
               "line 1: is no Medit file: those begin with MeshVersionFormatted (binary ones, .meshb, are not read)");
     EXPECT_EQ(refusal_of("a.mesh", replaced("Dimension\n3", "Dimension\n2")), "line 4: is of dimension 2, not 3");

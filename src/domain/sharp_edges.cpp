@@ -1,0 +1,107 @@
+#include "domain/sharp_edges.h"
+
+#include "domain/triangulated_surface.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace kropla {
+namespace {
+
+/// An edge with the normals of its triangles.
+struct Edge {
+    int a, b;
+    std::vector<Vec3> normals;
+};
+
+std::vector<Edge> edges_of(const TriangulatedSurface& surface) {
+    struct Side {
+        int a, b;
+        std::size_t triangle;
+    };
+    std::vector<Side> sides;
+    for (std::size_t t = 0; t < surface.triangles().size(); ++t)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const int a = surface.triangles()[t][i], b = surface.triangles()[t][(i + 1) % 3];
+            sides.push_back({std::min(a, b), std::max(a, b), t});
+        }
+    std::ranges::sort(sides, {}, [](const Side& s) { return std::tuple(s.a, s.b, s.triangle); });
+    std::vector<Edge> edges;
+    for (const auto& [a, b, t] : sides) {
+        if (edges.empty() || edges.back().a != a || edges.back().b != b) edges.push_back({a, b, {}});
+        const Corners corners = surface.tree().corners(t);
+        edges.back().normals.push_back(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    }
+    return edges;
+}
+
+/// Which of a set of things are connected.
+class Joined {
+public:
+    explicit Joined(std::size_t count) : of_(count) { std::iota(of_.begin(), of_.end(), 0); }
+    int of(int i) {
+        while (of_[at(i)] != i) i = of_[at(i)] = of_[at(of_[at(i)])];
+        return i;
+    }
+    void join(int i, int j) { of_[at(of(i))] = of(j); }
+
+private:
+    static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    std::vector<int> of_;
+};
+
+/// The faces of the box that a place of a cut surface is on.
+unsigned faces_at(const TriangulatedSurface& surface, const Vec3& x) {
+    unsigned faces = 0;
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        if (x[axis] == (face % 2 == 0 ? surface.extent().min : surface.extent().max)[axis]) faces |= 1u << face;
+    }
+    return faces & surface.reached();
+}
+
+}  // namespace
+
+SharpEdges::SharpEdges(const TriangulatedSurface& surface) {
+    std::vector<Edge> edges = edges_of(surface);
+    std::erase_if(edges, [](const Edge& e) { return e.normals.size() == 2 && !(angle_between(e.normals[0], e.normals[1]) > sharp); });
+    const auto place = [&](int point) { return surface.points()[static_cast<std::size_t>(point)]; };
+    std::map<int, std::vector<std::size_t>> at;  // of points, the edges there
+    for (std::size_t e = 0; e < edges.size(); ++e)
+        for (const int point : {edges[e].a, edges[e].b}) at[point].push_back(e);
+    Joined joined(edges.size());
+    std::map<int, int> corner_at;
+    for (const auto& edges_at : at) {
+        const int point = edges_at.first;
+        const std::vector<std::size_t>& there = edges_at.second;
+        const auto along = [&](std::size_t e) { return place(edges[e].a == point ? edges[e].b : edges[e].a) - place(point); };
+        if (there.size() == 2 && angle_between(along(there[0]), -along(there[1])) < sharp) {
+            joined.join(static_cast<int>(there[0]), static_cast<int>(there[1]));
+        } else {
+            corner_at[point] = static_cast<int>(corners.size());
+            corners.push_back(place(point));
+        }
+    }
+    std::map<int, int> course_of;  // what is joined
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto [known, is_new] = course_of.emplace(joined.of(static_cast<int>(e)), static_cast<int>(courses.size()));
+        if (is_new) courses.emplace_back();
+        segments.push_back({place(edges[e].a), place(edges[e].b), known->second});
+        Course& course = courses[static_cast<std::size_t>(known->second)];
+        for (const int point : {edges[e].a, edges[e].b}) {
+            if (const auto corner = corner_at.find(point); corner != corner_at.end()) course.corners.push_back(corner->second);
+            course.faces |= faces_at(surface, place(point));
+        }
+    }
+}
+
+bool SharpEdges::meet(int one, int other) const {
+    if (one == other) return true;
+    const auto& of_one = courses[static_cast<std::size_t>(one)].corners;
+    const auto& of_other = courses[static_cast<std::size_t>(other)].corners;
+    return std::ranges::any_of(of_one, [&](int corner) { return std::ranges::find(of_other, corner) != of_other.end(); });
+}
+
+}  // namespace kropla

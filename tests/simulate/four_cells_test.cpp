@@ -1,0 +1,74 @@
+// Four tets at once give the bits that each of them gives alone.
+#include "base/random.h"
+#include "meshes.h"
+#include "simulate/flow_cell.h"
+#include <kropla/mesh/topology.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace kropla {
+namespace {
+
+/// A stage of a flow of which everything is random.
+class RandomStage {
+public:
+    explicit RandomStage(bool convection) : mesh_(unit_cube(4)), convection_(convection) {
+        for (const Vertex v : mesh_.position.indices()) {
+            position_.push_back(mesh_.position[v] + 0.02 * vector());
+            mesh_velocity_.push_back(vector());
+            old_.push_back(vector());
+            guess_.velocity.push_back(vector());
+            guess_.pressure.push_back(random_.uniform(-1, 1));
+            force_.push_back(vector());
+        }
+        material_.push_back({.density = 1.3, .viscosity = 0.07, .densities = {}, .viscosities = {}, .density_rate = {}, .force = force_});
+        open_.fill(false);
+        open_[1] = true;
+        open_pressure_[1] = guess_.pressure;
+    }
+    [[nodiscard]] FlowStage stage(double per_time) const {
+        return {mesh_, position_, mesh_velocity_, old_, guess_, material_, open_, open_pressure_, {0.3, -2, 9.8}, per_time, convection_, upper_};
+    }
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+
+    static constexpr std::uint64_t seed = 5;
+
+private:
+    Vec3 vector() { return {random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)}; }
+
+    Random random_{seed};
+    Mesh mesh_;
+    bool convection_;
+    Array<Vertex, Vec3> position_, mesh_velocity_, old_, force_;
+    FlowState guess_;
+    Array<Region, FlowMaterial> material_;
+    std::array<bool, 6> open_;
+    std::array<Array<Vertex, double>, 6> open_pressure_;
+    UpperSides upper_;
+};
+
+TEST(FourCells, OfAFlowHaveTheResidualsOfEach) {
+    SCOPED_TRACE("seed " + std::to_string(RandomStage::seed));
+    for (const bool convection : {true, false}) {
+        const RandomStage random(convection);
+        for (const double per_time : {0.0, 20.0}) {
+            const FlowStage stage = random.stage(per_time);
+            const std::vector<Tet> tets = all_tets(random.mesh());
+            for (std::size_t first = 0; first + 4 <= tets.size(); first += 4) {
+                const std::array four = {tets[first], tets[first + 1], tets[first + 2], tets[first + 3]};
+                std::array<CellBlocks<4>, 4> together;
+                flow_residuals(stage, four, together);
+                for (std::size_t which = 0; which < 4; ++which) {
+                    CellBlocks<4> alone;
+                    flow_cell(stage, four[which], false, alone);
+                    ASSERT_EQ(together[which].residual, alone.residual) << "cell " << four[which].value;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace kropla
