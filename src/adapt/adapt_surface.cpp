@@ -256,4 +256,15 @@ Changes improve_surface(Mesh& mesh, const SurfaceOf& of, std::span<const Tet> ce
     return improved.changes;
 }
 
+std::vector<Tet> cells_at(const Mesh& mesh, std::span<const Vertex> vertices) {
+    IndexSet<Tet> cells;
+    std::vector<Tet> around;
+    for (Vertex v : vertices) {
+        if (!alive(mesh, v)) continue;
+        ball(mesh, v, around);
+        for (Tet t : around) cells.insert(t);
+    }
+    return cells.list();
+}
+
 }  // namespace kropla

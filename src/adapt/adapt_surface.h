@@ -21,4 +21,7 @@ Changes adapt_surface(Mesh& mesh, const SurfaceOf& of, std::span<const std::arra
 /// surface that make the worst of those concerned better. For what `improve` has left, and to be followed by it.
 Changes improve_surface(Mesh& mesh, const SurfaceOf& of, std::span<const Tet> cells, const AdaptOptions& options);
 
+/// The cells at vertices that are still there.
+[[nodiscard]] std::vector<Tet> cells_at(const Mesh& mesh, std::span<const Vertex> vertices);
+
 }  // namespace kropla

@@ -17,18 +17,6 @@ void find_sizes(std::span<const Vertex> vertices, const Snapshot& at_time, const
     for_all(vertices.size(), [&](std::size_t i) { size[vertices[i]] = target_size(at_time, mesh.position[vertices[i]]); });
 }
 
-/// The cells at vertices.
-std::vector<Tet> cells_at(const Mesh& mesh, std::span<const Vertex> vertices) {
-    IndexSet<Tet> cells;
-    std::vector<Tet> around;
-    for (Vertex v : vertices) {
-        if (!alive(mesh, v)) continue;
-        ball(mesh, v, around);
-        for (Tet t : around) cells.insert(t);
-    }
-    return cells.list();
-}
-
 SurfaceOf surface_of(std::size_t number, const Body& body) {
     return {region_of_body(number), body.pinned, body.sharp};
 }

@@ -3,6 +3,7 @@
 #include "app/hanging.h"
 
 #include "mesh/box_tree.h"
+#include "mesh/triangle.h"
 
 #include <algorithm>
 #include <limits>
@@ -41,30 +42,11 @@ std::vector<Facet> inner_boundary(const Mesh& mesh) {
     return facets;
 }
 
-double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
-    const Vec3 along = b - a;
-    const double s = std::clamp(dot(x - a, along) / squared_norm(along), 0.0, 1.0);
-    return distance(x, a + s * along);
-}
-
-double distance_to_triangle(const Vec3& x, const std::array<Vec3, 3>& p) {
-    const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-    bool above = true;  // the foot of the perpendicular is inside
-    double to_edges = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3& a = p[i];
-        const Vec3& b = p[(i + 1) % 3];
-        above = above && determinant(normal, b - a, x - a) >= 0;
-        to_edges = std::min(to_edges, distance_to_segment(x, a, b));
-    }
-    return above ? std::min(to_edges, std::abs(dot(normalised(normal), x - p[0]))) : to_edges;
-}
-
 bool hangs_on(const Mesh& mesh, Vertex v, const std::array<Vertex, 3>& corners, double reach) {
     if (std::ranges::find(corners, v) != corners.end()) return false;
-    const std::array<Vec3, 3> places = {mesh.position[corners[0]], mesh.position[corners[1]],
-                                        mesh.position[corners[2]]};
-    return distance_to_triangle(mesh.position[v], places) <= reach;
+    const Corners places = {mesh.position[corners[0]], mesh.position[corners[1]], mesh.position[corners[2]]};
+    const Vec3& x = mesh.position[v];
+    return distance(closest_on_triangle(places, x).point, x) <= reach;
 }
 
 }  // namespace

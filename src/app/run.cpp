@@ -70,7 +70,7 @@ struct Place {
     double next_dt;       // [s]
     int steps_given = 0;  // time.steps as the case file has it (same_case.h)
     bool owes_frame = false;  // of this step: the run was interrupted before it was written
-    FileContents files = {};  // that the case names, as they were read
+    FileContents files = {};  // that the case names, as they were when the run was begun
 };
 
 bool at_end(const Place& place, const TimePlan& plan) {
@@ -276,10 +276,10 @@ int run_to_end(TimeLoop& loop, RunOutput& output, const Ranks& ranks, Progress& 
 
 /// The run's first mesh, told on the way.
 Place begin(const Case& given, const Ranks& ranks, Progress& progress) {
+    FileContents files = contents_of_files(to_toml(given));
     const auto start_time = std::chrono::steady_clock::now();
     ranks.watch->progress = [&](std::string_view stage, double share) { progress.show_stage(stage, share); };
-    Place place{start(given, ranks), 0, given.time.end / given.time.steps, given.time.steps, true,
-                contents_of_files(to_toml(given))};
+    Place place{start(given, ranks), 0, given.time.end / given.time.steps, given.time.steps, true, std::move(files)};
     ranks.watch->progress = {};
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_time;
     progress.say(mesh_line(place.state.moving.reference(), taken.count()));

@@ -51,7 +51,7 @@ SizeField size_of_mesh(const Mesh& mesh, const Domain& domain) {
     size.surface = quantile(on_surfaces, 0.5);
     size.far = std::max(size.far, size.surface);
     Domain sized = domain;
-    sized.size = size;
+    sized.size = size;  // thin places are looked for at these
     const Snapshot at = snapshot(sized, 0);
     const std::size_t stride = edges.size() / most_edges + 1;
     for (std::size_t i = 0; i < edges.size(); i += stride) {

@@ -27,7 +27,7 @@ std::string plain_formula(std::string text) {
     return error == std::errc() && stop == end ? fmt::format("{}", number) : text;
 }
 
-bool names_file(std::string_view key) { return key.ends_with(".file") || key.ends_with(".mesh"); }
+bool names_file(std::string_view key) { return key == "domain.mesh" || (key.starts_with("body[") && key.ends_with("].file")); }
 
 /// Is the value a name, rather than a formula?
 bool is_name(std::string_view key) {

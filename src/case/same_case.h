@@ -35,7 +35,8 @@ struct RunSoFar {
 /// Makes `it` a case with which the run can go on: everything that the steps taken so far have come from is as it
 /// was. The end may be another one that is not yet past; steps keep their length, so that `time.steps` follows where
 /// it is left as it was given. How often frames are written may change. Throws CaseError, naming the first key that
-/// differs otherwise and both values, or whose file holds something else; `file` names the case file, `folder` the run's.
+/// differs otherwise and both values, or whose file holds something else; FileError if that cannot be read. `file` names the
+/// case file, `folder` the run's.
 void go_on_with(Case& given, const RunSoFar& run, const std::string& file, const std::string& folder);
 
 }  // namespace kropla

@@ -43,23 +43,30 @@ void lower_by_gap(SizeLimit& limit, const Domain& domain, const Approach& approa
     lower(limit, size_for_gap(domain, approach, least_gap), in_words(domain, approach) + ", too close");
 }
 
-/// A body, or a slot in it, that is thinner than that many of the least sizes cannot be meshed.
+std::string in_words(const ThinPlaces::Width& narrow) {
+    const std::string width = metres(narrow.across);
+    switch (narrow.kind) {
+        case ThinPlaces::Kind::body: return "is " + width + " thick";
+        case ThinPlaces::Kind::slot: return "leaves open " + width;
+        case ThinPlaces::Kind::edges: return "has sharp edges " + width + " from each other";
+        case ThinPlaces::Kind::edge_at_face: return "has a sharp edge " + width + " from a face of the box that cuts it";
+    }
+    return {};
+}
+
+/// A body, or a slot in it, that is thinner than that many of the least sizes cannot be meshed; nor can edges that are nearer.
 void check_thickness(const Domain& domain, const Snapshot& at, double least_width) {
-    constexpr double doubtful = 0.1;  // of the least size: so much smaller ones beside large ones are not always meshed
+    constexpr double doubtful = 0.1;  // [of the least size] so much smaller ones beside large ones are not always meshed
     for (std::size_t body = 0; body < at.shapes.size(); ++body) {
         if (!at.shapes[body].surface) continue;
         const double least = std::min(least_size(at.size), surface_size(at, body));
         const ThinPlaces::Width narrowest = thin_places_of(at, body)->narrowest();
         if (narrowest.across >= least_width * least) continue;
         const Vec3 place = at.shapes[body].centre + rotated(at.shapes[body].orientation, narrowest.at);
-        const bool by_edges = narrowest.kind == ThinPlaces::Kind::edges;
+        const bool is_thin = narrowest.kind == ThinPlaces::Kind::body || narrowest.kind == ThinPlaces::Kind::slot;
         const double would_do = gap_share * narrowest.across;
-        const std::string width = metres(narrowest.across);
-        const std::string what = by_edges ? "has sharp edges " + width + " from each other, or from a face of the box,"
-                                 : narrowest.kind == ThinPlaces::Kind::body ? "is " + width + " thick"
-                                                                              : "leaves open " + width;
-        throw DomainError(named(domain.bodies[body]) + " " + what + " at " + place_words(place) + ", too " +
-                          (by_edges ? "near" : "thin") + " for size.least = " + metres(least) + "; at most " +
+        throw DomainError(named(domain.bodies[body]) + " " + in_words(narrowest) + " at " + place_words(place) + ", too " +
+                          (is_thin ? "thin" : "near") + " for size.least = " + metres(least) + "; at most " +
                           metres(rounded_down(would_do)) + (would_do > doubtful * least ? " would do" : " might do"));
     }
 }

@@ -1,9 +1,12 @@
+// Sharp edges of triangulated surfaces, by the angle between triangles, as in generate/creases.cpp [Botsch, Kobbelt 2004].
+
 #include "domain/sharp_edges.h"
 
 #include "domain/triangulated_surface.h"
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <numeric>
 #include <tuple>
 
@@ -72,7 +75,7 @@ SharpEdges::SharpEdges(const TriangulatedSurface& surface) {
     for (std::size_t e = 0; e < edges.size(); ++e)
         for (const int point : {edges[e].a, edges[e].b}) at[point].push_back(e);
     Joined joined(edges.size());
-    std::map<int, int> corner_at;
+    std::set<int> corners;
     for (const auto& edges_at : at) {
         const int point = edges_at.first;
         const std::vector<std::size_t>& there = edges_at.second;
@@ -80,8 +83,7 @@ SharpEdges::SharpEdges(const TriangulatedSurface& surface) {
         if (there.size() == 2 && angle_between(along(there[0]), -along(there[1])) < sharp) {
             joined.join(static_cast<int>(there[0]), static_cast<int>(there[1]));
         } else {
-            corner_at[point] = static_cast<int>(corners.size());
-            corners.push_back(place(point));
+            corners.insert(point);
         }
     }
     std::map<int, int> course_of;  // what is joined
@@ -91,7 +93,7 @@ SharpEdges::SharpEdges(const TriangulatedSurface& surface) {
         segments.push_back({place(edges[e].a), place(edges[e].b), known->second});
         Course& course = courses[static_cast<std::size_t>(known->second)];
         for (const int point : {edges[e].a, edges[e].b}) {
-            if (const auto corner = corner_at.find(point); corner != corner_at.end()) course.corners.push_back(corner->second);
+            if (corners.contains(point)) course.corners.push_back(point);
             course.faces |= faces_at(surface, place(point));
         }
     }

@@ -19,12 +19,11 @@ struct SharpEdges {
     };
     /// Along one course.
     struct Course {
-        std::vector<int> corners;  // that it ends in
-        unsigned faces = 0;        // of the box, a bit each, that one of its ends is on
+        std::vector<int> corners;  // points of the surface that it ends in
+        unsigned faces = 0;        // of the box, a bit each, that one of its points is on
     };
     std::vector<Segment> segments;
     std::vector<Course> courses;
-    std::vector<Vec3> corners;
 
     /// Do both courses end in the same corner, or are they the same?
     [[nodiscard]] bool meet(int one, int other) const;

@@ -16,19 +16,13 @@ namespace {
 
 constexpr ThinPlaces::Width nowhere{std::numeric_limits<double>::infinity(), ThinPlaces::Kind::body, {}};
 
-/// The nearest place on the segment.
-Vec3 nearest_on(const SharpEdges::Segment& segment, const Vec3& x) {
-    const Vec3 along = segment.b - segment.a;
-    return segment.a + std::clamp(dot(x - segment.a, along) / squared_norm(along), 0.0, 1.0) * along;
-}
-
 /// To the nearest of the faces of the box on which the surface ends, but for those on which the course does [m].
 double distance_to_faces(const TriangulatedSurface& surface, const SharpEdges::Course& course, const Vec3& x) {
     double least = std::numeric_limits<double>::infinity();
     for (int face = 0; face < 6; ++face) {
         if (((surface.reached() & ~course.faces) >> face & 1u) == 0) continue;
-        const int axis = face / 2;
-        least = std::min(least, std::abs(x[axis] - (face % 2 == 0 ? surface.extent().min : surface.extent().max)[axis]));
+        const Extent& extent = surface.extent();
+        least = std::min(least, std::abs(x[face / 2] - (face % 2 == 0 ? extent.min : extent.max)[face / 2]));
     }
     return least;
 }
@@ -90,6 +84,7 @@ struct ThinPlaces::EdgeLook {
     const SharpEdges& edges;
     const BoxTree& tree;  // of their segments
     double least, most;   // [m]
+    double coarse;        // [m] as for triangles
     int course;
     std::vector<Place> places = {};
     Width narrowest = nowhere;
@@ -100,12 +95,15 @@ struct ThinPlaces::EdgeLook {
         const double to_edges = tree.least([&](const Extent& box) { return std::sqrt(box.squared_distance(x)); },
                                            [&](std::size_t i) {
                                                const SharpEdges::Segment& other = edges.segments[i];
-                                               return edges.meet(course, other.course) ? beyond : distance(nearest_on(other, x), x);
+                                               return edges.meet(course, other.course)
+                                                          ? beyond
+                                                          : distance(closest_on_segment(other.a, other.b, x), x);
                                            },
                                            beyond);
-        const double width =
-            std::min(to_edges, distance_to_faces(surface, edges.courses[static_cast<std::size_t>(course)], x));
-        if (width < narrowest.across) narrowest = {width, Kind::edges, x};
+        const double to_faces = distance_to_faces(surface, edges.courses[static_cast<std::size_t>(course)], x);
+        const double width = std::min(to_edges, to_faces);
+        if (!(width < beyond)) return most;
+        if (width < narrowest.across) narrowest = {width, to_edges <= to_faces ? Kind::edges : Kind::edge_at_face, x};
         return std::clamp(gap_share * width, least, most);
     }
 
@@ -113,11 +111,11 @@ struct ThinPlaces::EdgeLook {
     void halve(const Vec3& a, const Vec3& b) {
         const Vec3 middle = 0.5 * (a + b);
         const double size = std::min({at(a), at(middle), at(b)}), length = distance(a, b);
-        if (length > most || (length > size && size < most)) {
+        if (length > coarse || (length > size && size < most)) {
             halve(a, middle);
             halve(middle, b);
         } else if (size < most) {
-            places.push_back({{a, b, middle}, size});
+            places.push_back({{a, b, b}, size});
         }
     }
 };
@@ -137,7 +135,7 @@ ThinPlaces::ThinPlaces(const TriangulatedSurface& surface, double least, double 
     for (const SharpEdges::Segment& segment : edges.segments) extents.push_back(extent({segment.a, segment.b, segment.b}));
     const BoxTree tree(std::move(extents));
     std::vector<EdgeLook> edge_looks;
-    for (const SharpEdges::Segment& segment : edges.segments) edge_looks.push_back({surface, edges, tree, least, most, segment.course});
+    for (const SharpEdges::Segment& segment : edges.segments) edge_looks.push_back({surface, edges, tree, least, most, coarse, segment.course});
     for_all(edge_looks.size(), [&](std::size_t e) { edge_looks[e].halve(edges.segments[e].a, edges.segments[e].b); }, 16);
     std::map<int, std::vector<Place>> by_size;
     const auto take = [&](const auto& look) {

@@ -25,8 +25,8 @@ public:
     /// below `neck_share` of the width; at edges `gap_share` of it; from there it rises by `growth` per metre.
     [[nodiscard]] double size(const Vec3& x, double growth) const;
 
-    /// What is thin: the body, what it leaves open, or what is between edges.
-    enum class Kind { body, slot, edges };
+    /// What is thin: the body, what it leaves open, what is between edges, or between an edge and a face of the box.
+    enum class Kind { body, slot, edges, edge_at_face };
     struct Width {
         double across;  // [m], infinite if there is nothing near
         Kind kind;

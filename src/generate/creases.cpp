@@ -28,12 +28,6 @@ std::vector<Extent> boxes_of(const std::vector<std::pair<Vec3, Vec3>>& segments)
     return boxes;
 }
 
-Vec3 nearest_on(const std::pair<Vec3, Vec3>& segment, const Vec3& x) {
-    const auto& [a, b] = segment;
-    const double along = std::clamp(dot(x - a, b - a) / squared_norm(b - a), 0.0, 1.0);
-    return along < 0.5 ? a + along * (b - a) : b + (1 - along) * (a - b);  // the ends exactly
-}
-
 }  // namespace
 
 void find_holds(Sheet& sheet) {
@@ -66,7 +60,7 @@ Vec3 Creases::nearest(const Vec3& x) const {
     double least = Extent::infinite;
     tree_.least([&](const Extent& box) { return box.squared_distance(x); },
                 [&](std::size_t item) {
-                    const Vec3 there = nearest_on(segments_[item], x);
+                    const Vec3 there = closest_on_segment(segments_[item].first, segments_[item].second, x);
                     const double away = squared_norm(there - x);
                     if (away < least) {
                         least = away;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <string>
@@ -80,10 +81,15 @@ private:
         return Vertex(number - 1);
     }
 
-    int read_reference() { return std::abs(in_.number<int>("a reference")); }
+    int read_signed() {
+        const int reference = in_.number<int>("a reference");
+        if (reference < -std::numeric_limits<int>::max()) in_.fail("a reference is too far below 0");
+        return reference;
+    }
+    int read_reference() { return std::abs(read_signed()); }
 
     Region read_region() {
-        const int reference = in_.number<int>("a reference");
+        const int reference = read_signed();
         regions_.insert(reference);
         if (reference != 0 && regions_.contains(-reference))
             in_.fail("has cells of " + std::to_string(std::abs(reference)) + " and of " + std::to_string(-std::abs(reference)) +

@@ -145,6 +145,11 @@ OnTriangle closest_on_triangle(const Corners& triangle, const Vec3& x) {
     return nearest;
 }
 
+Vec3 closest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
+    const double along = std::clamp(dot(x - a, b - a) / squared_norm(b - a), 0.0, 1.0);
+    return along < 0.5 ? a + along * (b - a) : b + (1 - along) * (a - b);  // the ends exactly
+}
+
 bool pierce(const Corners& a, const Corners& b) {
     return may_meet(a, b) && (any_edge_pierces(a, b) || any_edge_pierces(b, a));
 }

@@ -16,8 +16,10 @@ struct OnTriangle {
     Vec3 point;
     TrianglePart part;
 };
-/// The point of the triangle, which has an area, nearest to `x`.
+/// The point of the triangle nearest to `x`. It has an area, or is a segment {a, b, b}.
 [[nodiscard]] OnTriangle closest_on_triangle(const Corners& triangle, const Vec3& x);
+
+[[nodiscard]] Vec3 closest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x);
 
 /// As orient3d (base/predicates.h), at once where the points lie in a plane across an axis.
 [[nodiscard]] int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x);

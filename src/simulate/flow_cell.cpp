@@ -53,7 +53,7 @@ using Matrix3 = std::array<Vector3<Number>, 3>;  // by rows
 template <std::size_t n, class Number = double>
 struct FlowCell {
     Corners<n, Number> x;
-    std::array<Vertex, n> vertex;                   // of one alone
+    std::array<Vertex, n> vertex;                   // not of four at once
     Corners<n, Number> velocity, carrying, inertia;  // u, a, rho du/dt - f
     std::array<Number, n> pressure;
     Number density, viscosity;
@@ -421,7 +421,8 @@ template <std::size_t n, class Name>
 CrossingRates most_crossed(const FlowStage& stage, const Name& name) {
     const auto vertices = cell_vertices(stage.mesh, name);
     const CellPoints<n> points = cell_points(corners(stage.position, stage.mesh, name));
-    const Corners<n> flows = at_corners(stage.guess.velocity, vertices), goes = at_corners(stage.mesh_velocity, vertices);
+    const Corners<n> flows = stage.convection ? at_corners(stage.guess.velocity, vertices) : Corners<n>{};
+    const Corners<n> goes = at_corners(stage.mesh_velocity, vertices);
     CrossingRates most{0, 0};
     for (std::size_t k = 0; k < points.size(); ++k) {
         Corners<n> gradient;

@@ -230,7 +230,7 @@ private:
         if (!choice.potential) check(KSPGMRESSetRestart(solver, restart));
         PC preconditioner = nullptr;
         check(KSPGetPC(solver, &preconditioner));
-if (choice.preconditioner == Preconditioner::multigrid) {
+        if (choice.preconditioner == Preconditioner::multigrid) {
             set_multigrid(choice);
             check(PCSetType(preconditioner, PCHYPRE));
             check(PCHYPRESetType(preconditioner, "boomeramg"));

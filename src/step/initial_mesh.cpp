@@ -1,16 +1,16 @@
 #include <kropla/step/initial_mesh.h>
 
 #include "adapt/adapt_surface.h"
-#include "adapt/constants.h"
 #include <kropla/adapt/refusal.h>
 #include <kropla/domain/solids.h>
 #include <kropla/generate/generate.h>
-#include "mesh/index_set.h"
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/topology.h>
 #include <kropla/step/stuck.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <vector>
 
 namespace kropla {
@@ -29,33 +29,24 @@ struct Draft {
     QualitySummary quality;
 };
 
-/// The cells that are new, and those at vertices that are.
-std::vector<Tet> with_those_around(const Mesh& mesh, const Changes& changes) {
-    IndexSet<Tet> cells;
-    for (const Tet t : changes.cells)
-        if (alive(mesh, t)) cells.insert(t);
-    for (const Vertex v : changes.vertices)
-        if (alive(mesh, v))
-            for (const Tet t : ball(mesh, v)) cells.insert(t);
-    return cells.list();
-}
-
-/// Where there are cells at a surface without a layer that are not good because its triangles are not, these are exchanged for
-/// others, with the volume within kept.
+/// Where cells are worse than they are to be beside smooth surfaces, triangles of surfaces without a layer are exchanged for
+/// others, with the volume within kept, as far as that helps bad cells at them.
 void help_surfaces(Draft& made, const Domain& domain, const Snapshot& at, const AdaptOptions& options) {
-    constexpr double good_at_surfaces = 6;  // [-] R/r
-    std::vector<double> sharp;
-    for (const Body& body : domain.bodies) sharp.push_back(keep_edges(body).sharp);
-    for (int round = 0; round < most_rounds; ++round) {
-        std::vector<Tet> cells = all_tets(made.mesh);
-        if (worst_aspect_ratio(made.mesh, cells) <= good_at_surfaces) return;
-        heed(options.watch, "improving surfaces", static_cast<double>(round) / most_rounds);
+    constexpr double promised = 6;  // [-] R/r
+    constexpr int rounds = 3;       // more brought nothing, where tried
+    std::vector<SurfaceOf> surfaces;
+    for (std::size_t body = 0; body < domain.bodies.size(); ++body)
+        if (const Body& of = domain.bodies[body]; !of.layer)
+            surfaces.push_back({region_of_body(body), of.pinned, keep_edges(of).sharp});
+    for (int round = 0; round < rounds; ++round) {
+        const std::vector<Tet> all = all_tets(made.mesh);
+        if (worst_aspect_ratio(made.mesh, all) <= promised) return;
+        heed(options.watch, "improving surfaces", static_cast<double>(round) / rounds);
         Changes changes;
-        for (std::size_t body = 0; body < domain.bodies.size(); ++body)
-            if (!domain.bodies[body].layer)
-                changes += improve_surface(made.mesh, {region_of_body(body), 0, sharp[body]}, cells, options);
-        cells = with_those_around(made.mesh, changes);
-        if (cells.empty()) return;
+        for (const SurfaceOf& surface : surfaces) changes += improve_surface(made.mesh, surface, all, options);
+        if (changes.vertices.empty()) return;
+        std::vector<Tet> cells = cells_at(made.mesh, changes.vertices);
+        std::ranges::copy_if(changes.cells, std::back_inserter(cells), [&](Tet t) { return alive(made.mesh, t); });
         changes += improve(made.mesh, cells, at, options);
         changes += repair(made.mesh, cells, at, options);
         made.changes += changes;

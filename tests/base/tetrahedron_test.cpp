@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
 
 namespace kropla {
 namespace {
@@ -146,15 +145,14 @@ TEST(TetShape, DihedralAngles) {
 }
 
 TEST(TetShape, TheRangeIsThatOfItsDihedralAngles) {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> uniform(-1, 1);
-    const auto point = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
+    Random random{7};
+    const auto point = [&] { return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
     for (int i = 0; i < 1000; ++i) {  // half of them turned over
         const Vec3 a = point(), b = point(), c = point(), d = point();
         const auto angles = tet_dihedral_angles(a, b, c, d);
         const auto [least, largest] = tet_dihedral_range(a, b, c, d);
-        EXPECT_EQ(least, std::ranges::min(angles)) << i << " of seed 7";
-        EXPECT_EQ(largest, std::ranges::max(angles)) << i << " of seed 7";
+        EXPECT_DOUBLE_EQ(least, std::ranges::min(angles)) << i << " of seed 7";
+        EXPECT_DOUBLE_EQ(largest, std::ranges::max(angles)) << i << " of seed 7";
     }
 }
 

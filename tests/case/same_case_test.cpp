@@ -1,4 +1,5 @@
 // With which case a run may go on.
+#include "../io/examples.h"
 #include "case/same_case.h"
 #include <kropla/base/error.h>
 #include "case_text.h"
@@ -19,6 +20,44 @@ std::string refusal(const std::string& changed) {
         return error.what();
     }
     return "";
+}
+
+TEST(SameCase, FilesAreThoseOfTheMeshAndOfSurfaces) {
+    EXPECT_TRUE(contents_of_files("[parameters]\nmesh = 2e-4\nfile = 1\n").empty());
+    const Folder folder;
+    put(folder / "a", "something");
+    const std::string file = "\"" + (folder / "a").string() + "\"\n";
+    const FileContents contents =
+        contents_of_files("[domain]\nmesh = " + file + "[[body]]\nname = \"a\"\n[[body]]\nfile = " + file);
+    ASSERT_EQ(contents.size(), 2u);
+    EXPECT_EQ(contents.begin()->first, "body[1].file");
+    EXPECT_EQ(contents.rbegin()->first, "domain.mesh");
+    EXPECT_EQ(contents.begin()->second, contents.rbegin()->second);
+    EXPECT_GT(contents.begin()->second, 0);
+}
+
+TEST(SameCase, AFileThatHoldsSomethingElseIsNamedAndAnUnknownOneIsTaken) {
+    const Folder folder;
+    const std::string file = (folder / "a.stl").string();
+    const auto facet = [](const char* a, const char* b, const char* c) {
+        return std::string("facet normal 0 0 0\nouter loop\nvertex ") + a + "\nvertex " + b + "\nvertex " + c + "\nendloop\nendfacet\n";
+    };
+    const auto write = [&](const char* top) {
+        put(folder / "a.stl", "solid s\n" + facet("0 0 0", "0 1 0", "1 0 0") + facet("0 0 0", "1 0 0", top) + facet("1 0 0", "0 1 0", top) +
+                                  facet("0 1 0", "0 0 0", top) + "endsolid s\n");
+    };
+    const std::string of_file = "[domain]\nmin = [-3, -3, -3]\nmax = [3, 3, 3]\n[[body]]\nname = \"a\"\nshape = \"surface\"\n"
+                                "centre = [0, 0, 0]\nfile = \"" + file + "\"\n[size]\nsurface = 0.3\nfar = 1\n[time]\nend = 1\nsteps = 1\n";
+    write("0 0 1");
+    Case given = parse_case(of_file, "case.toml");
+    RunSoFar run{to_toml(given), 1, 0, contents_of_files(to_toml(given))};
+    EXPECT_NO_THROW(go_on_with(given, run, "case.toml", "d"));
+    write("0 0 1.5");
+    EXPECT_EQ(message_of<CaseError>([&] { go_on_with(given, run, "case.toml", "d"); }),
+              "case.toml: body[0].file: " + file + " is not the file that the run in d was begun with; with that it goes on, or begins "
+              "anew with --force");
+    run.files.clear();  // a checkpoint of before
+    EXPECT_NO_THROW(go_on_with(given, run, "case.toml", "d"));
 }
 
 TEST(SameCase, ParametersAreCompared) {

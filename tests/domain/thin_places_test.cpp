@@ -43,7 +43,7 @@ std::vector<Vec3> regular_polygon(int corners, double radius) {
 
 constexpr double least = 0.01, most = 0.5, growth = 0.2;
 
-ThinPlaces thin_places(const Triangles& t) { return {surface_of(t), least, most}; }
+ThinPlaces thin_places(const Triangles& t, double largest = most) { return {surface_of(t), least, largest}; }
 
 Domain with_body(const Triangles& t, double size, double least_size) {
     Domain domain{{{-4, -4, -4}, {4, 4, 4}}, {}, {size, 0.3, 2, least_size}};
@@ -139,7 +139,11 @@ Triangles blunted_wedge(double width) {
 
 TEST(ThinPlaces, SharpEdgesThatAreNearMakeTrianglesSmall) {
     EXPECT_FALSE(thin_places(prism_on({{-1, -1, 0}, {1, -1, 0}, {0, 0.5, 0}}, 1)).any());
-    EXPECT_FALSE(thin_places(blunted_wedge(1.01 * most / gap_share)).any());
+    for (const double largest : {most, 0.21, 0.108}) {
+        const ThinPlaces none = thin_places(blunted_wedge(1.01 * most / gap_share), largest);
+        EXPECT_FALSE(none.any()) << largest;
+        EXPECT_GT(none.narrowest().across, most / gap_share) << largest;
+    }
     const double width = 0.04;
     const ThinPlaces thin = thin_places(blunted_wedge(width));
     ASSERT_TRUE(thin.any());
@@ -150,7 +154,8 @@ TEST(ThinPlaces, SharpEdgesThatAreNearMakeTrianglesSmall) {
 }
 
 TEST(ThinPlaces, BodiesWithSharpEdgesThatAreNearAreMeshed) {
-    const Domain domain = with_body(blunted_wedge(0.03), 0.25, 0.0125);
+    Domain domain = with_body(blunted_wedge(0.03), 0.25, 0.0125);
+    domain.bodies[0].shape.orientation = rotation_about({1, 2, 3}, 0.7);
     const Mesh mesh = initial_mesh(domain, 1);
     EXPECT_LT(worst_aspect_ratio(mesh, all_tets(mesh)), 1.1 * 6.1);
     EXPECT_NEAR(region_volume(mesh, Region(1)), 2 * 1.5 * (2 + 0.03) / 2, 1e-13);
@@ -166,10 +171,10 @@ TEST(ThinPlaces, SharpEdgesThatAreTooNearAreRefusedWithThePlace) {
         return "";
     };
     EXPECT_EQ(refused(with_body(blunted_wedge(0.002), 0.25, 0.0125)),
-              "body \"plate\" has sharp edges 0.002 m from each other, or from a face of the box, at (-0.001, 0.5, -1) m, too near for "
+              "body \"plate\" has sharp edges 0.002 m from each other at (-0.001, 0.5, -1) m, too near for "
               "size.least = 0.0125 m; at most 0.003 m would do");
     Domain cut = with_body(prism_on({{-1, -5, 0}, {0, -5, 0}, {1, -3.999, 0}, {1, -2, 0}, {-1, -2, 0}}, 1), 0.25, 0.0125);
     cut.bodies[0].shape = cut_by(cut.box, cut.bodies[0].shape);  // an edge is just above the floor, which cuts its side
     const std::string said = refused(cut);
-    EXPECT_TRUE(said.starts_with("body \"plate\" has sharp edges 0.001 m from each other, or from a face of the box, at (1, -3.999")) << said;
+    EXPECT_TRUE(said.starts_with("body \"plate\" has a sharp edge 0.001 m from a face of the box that cuts it at (1, -3.999")) << said;
 }

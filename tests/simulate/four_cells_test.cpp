@@ -7,14 +7,19 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace kropla {
 namespace {
 
-/// A stage of a flow of which everything is random.
+/// A stage of a flow with random places, velocities, pressures and forces; with densities at vertices if it expands.
 class RandomStage {
 public:
-    explicit RandomStage(bool convection) : mesh_(unit_cube(4)), convection_(convection) {
+    explicit RandomStage(bool convection, bool expands) : mesh_(unit_cube(4)), convection_(convection) {
+        Array<Vertex, double> densities;
         for (const Vertex v : mesh_.position.indices()) {
             position_.push_back(mesh_.position[v] + 0.02 * vector());
             mesh_velocity_.push_back(vector());
@@ -22,8 +27,9 @@ public:
             guess_.velocity.push_back(vector());
             guess_.pressure.push_back(random_.uniform(-1, 1));
             force_.push_back(vector());
+            if (expands) densities.push_back(random_.uniform(1, 2));
         }
-        material_.push_back({.density = 1.3, .viscosity = 0.07, .densities = {}, .viscosities = {}, .density_rate = {}, .force = force_});
+        material_.push_back({.density = 1.3, .viscosity = 0.07, .densities = densities, .viscosities = {}, .density_rate = {}, .force = force_});
         open_.fill(false);
         open_[1] = true;
         open_pressure_[1] = guess_.pressure;
@@ -51,8 +57,8 @@ private:
 
 TEST(FourCells, OfAFlowHaveTheResidualsOfEach) {
     SCOPED_TRACE("seed " + std::to_string(RandomStage::seed));
-    for (const bool convection : {true, false}) {
-        const RandomStage random(convection);
+    for (const auto& [convection, expands] : {std::pair{true, false}, {false, false}, {true, true}}) {
+        const RandomStage random(convection, expands);
         for (const double per_time : {0.0, 20.0}) {
             const FlowStage stage = random.stage(per_time);
             const std::vector<Tet> tets = all_tets(random.mesh());
