@@ -2,6 +2,7 @@
 #include "base/random.h"
 #include "meshes.h"
 #include "simulate/flow_cell.h"
+#include "simulate/heat_cell.h"
 #include <kropla/mesh/topology.h>
 
 #include <gtest/gtest.h>
@@ -72,6 +73,50 @@ TEST(FourCells, OfAFlowHaveTheResidualsOfEach) {
                     ASSERT_EQ(together[which].residual, alone.residual) << "cell " << four[which].value;
                 }
             }
+        }
+    }
+}
+
+TEST(FourCells, OfHeatHaveTheSystemsOfEach) {
+    constexpr std::uint64_t seed = 6;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random{seed};
+    const auto vector = [&] { return Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
+    const Mesh before = unit_cube(4);
+    Mesh current = before;
+    Array<Vertex, double> temperature, potential, source;
+    Array<Vertex, Vec3> velocity;
+    Array<Vertex, char> low;
+    for (const Vertex v : current.position.indices()) {
+        current.position[v] += 0.02 * vector();
+        temperature.push_back(random.uniform(300, 2400));
+        potential.push_back(random.uniform(-1, 1));
+        source.push_back(random.uniform(-1, 1));
+        velocity.push_back(vector());
+        low.push_back(random.uniform() < 0.2 ? 1 : 0);  // so that fours are of one kind, or not
+    }
+    const HeatOptions options{.regions = {HeatRegion{.material = {.conductivity = 3, .density = 2, .specific_heat = 5}}}};
+    const MaterialFlow flow{.potential = {potential}, .velocity = velocity};
+    const Array<Region, Array<Vertex, double>> sources = {source};
+    const HeatStep step{.before = before, .current = current, .options = options, .old_temperature = temperature, .flow = flow,
+                        .carried = Array<Region, Array<Vertex, Vec3>>(1), .source = sources, .dt = 0.01,
+                        .enthalpy = enthalpy_curves(options), .material = Array<Region, MaterialState>(1), .low = low};
+    const std::vector<Tet> tets = all_tets(current);
+    for (std::size_t first = 0; first + 4 <= tets.size(); first += 4) {
+        const std::array four = {tets[first], tets[first + 1], tets[first + 2], tets[first + 3]};
+        std::array<CellSystem<4>, 4> together;
+        cell_systems(step, four, {&together[0], &together[1], &together[2], &together[3]});
+        for (std::size_t which = 0; which < 4; ++which) {
+            const CellSystem<4> alone = cell_system(step, four[which]);
+            for (std::size_t i = 0; i < 4; ++i)
+                for (std::size_t j = 0; j < 4; ++j)
+                    if (i != j) {
+                        ASSERT_EQ(together[which].matrix[i][j], alone.matrix[i][j]) << "cell " << four[which].value;
+                    }
+            ASSERT_EQ(together[which].row_sum, alone.row_sum);
+            ASSERT_EQ(together[which].held, alone.held);
+            ASSERT_EQ(together[which].right, alone.right);
+            ASSERT_EQ(together[which].load, alone.load);
         }
     }
 }
