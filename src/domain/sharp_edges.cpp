@@ -5,18 +5,19 @@
 #include "domain/triangulated_surface.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
-#include <set>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 namespace kropla {
 namespace {
 
-/// An edge with the normals of its triangles.
 struct Edge {
     int a, b;
-    std::vector<Vec3> normals;
+    Vec3 normal;                                            // of its first triangle
+    double bend = std::numeric_limits<double>::infinity();  // [rad] to that of the second; infinite if it has none
 };
 
 std::vector<Edge> edges_of(const TriangulatedSurface& surface) {
@@ -33,9 +34,10 @@ std::vector<Edge> edges_of(const TriangulatedSurface& surface) {
     std::ranges::sort(sides, {}, [](const Side& s) { return std::tuple(s.a, s.b, s.triangle); });
     std::vector<Edge> edges;
     for (const auto& [a, b, t] : sides) {
-        if (edges.empty() || edges.back().a != a || edges.back().b != b) edges.push_back({a, b, {}});
         const Corners corners = surface.tree().corners(t);
-        edges.back().normals.push_back(cross(corners[1] - corners[0], corners[2] - corners[0]));
+        const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        if (edges.empty() || edges.back().a != a || edges.back().b != b) edges.push_back({a, b, normal});
+        else edges.back().bend = angle_between(edges.back().normal, normal);
     }
     return edges;
 }
@@ -69,7 +71,7 @@ unsigned faces_at(const TriangulatedSurface& surface, const Vec3& x) {
 
 SharpEdges::SharpEdges(const TriangulatedSurface& surface) {
     std::vector<Edge> edges = edges_of(surface);
-    std::erase_if(edges, [](const Edge& e) { return e.normals.size() == 2 && !(angle_between(e.normals[0], e.normals[1]) > sharp); });
+    std::erase_if(edges, [](const Edge& e) { return !(e.bend > sharp); });
     const auto place = [&](int point) { return surface.points()[static_cast<std::size_t>(point)]; };
     std::map<int, std::vector<std::size_t>> at;  // of points, the edges there
     for (std::size_t e = 0; e < edges.size(); ++e)
