@@ -5,6 +5,7 @@
 #include "domain/triangulated_surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -18,7 +19,17 @@ struct Edge {
     int a, b;
     Vec3 normal;                                            // of its first triangle
     double bend = std::numeric_limits<double>::infinity();  // [rad] to that of the second; infinite if it has none
+    unsigned along = 0;
 };
+
+/// To the faces across which axis the triangle is nearly parallel, a bit each.
+unsigned faces_along(const Vec3& normal) {
+    constexpr double parallel = 0.94;  // cosine of 20 degrees, as in thin_places.cpp
+    unsigned faces = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(normal[axis]) > parallel * norm(normal)) faces |= 3u << 2 * axis;
+    return faces;
+}
 
 std::vector<Edge> edges_of(const TriangulatedSurface& surface) {
     struct Side {
@@ -38,6 +49,7 @@ std::vector<Edge> edges_of(const TriangulatedSurface& surface) {
         const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
         if (edges.empty() || edges.back().a != a || edges.back().b != b) edges.push_back({a, b, normal});
         else edges.back().bend = angle_between(edges.back().normal, normal);
+        edges.back().along |= faces_along(normal);
     }
     return edges;
 }
@@ -96,9 +108,14 @@ SharpEdges::SharpEdges(const TriangulatedSurface& surface) {
         Course& course = courses[static_cast<std::size_t>(known->second)];
         for (const int point : {edges[e].a, edges[e].b}) {
             if (corners.contains(point)) course.corners.push_back(point);
-            course.faces |= faces_at(surface, place(point));
+            course.faces |= faces_at(surface, place(point)) | edges[e].along;
         }
     }
+    std::map<int, unsigned> faces_at_corner;
+    for (const Course& course : courses)
+        for (const int corner : course.corners) faces_at_corner[corner] |= course.faces;
+    for (Course& course : courses)
+        for (const int corner : course.corners) course.faces |= faces_at_corner[corner];
 }
 
 bool SharpEdges::meet(int one, int other) const {

@@ -20,7 +20,9 @@ struct SharpEdges {
     /// Along one course.
     struct Course {
         std::vector<int> corners;  // points of the surface that it ends in
-        unsigned faces = 0;        // of the box, a bit each, that one of its points is on
+        // Of the box, a bit each, that it, or a course that it meets, has a point on, or to which a triangle there is nearly
+        // parallel.
+        unsigned faces = 0;
     };
     std::vector<Segment> segments;
     std::vector<Course> courses;

@@ -16,11 +16,11 @@ namespace {
 
 constexpr ThinPlaces::Width nowhere{std::numeric_limits<double>::infinity(), ThinPlaces::Kind::body, {}};
 
-/// To the nearest of the faces of the box on which the surface ends, but for those on which the course does [m].
-double distance_to_faces(const TriangulatedSurface& surface, const SharpEdges::Course& course, const Vec3& x) {
+/// To the nearest of the faces of the box on which the surface ends, but for these [m].
+double distance_to_faces(const TriangulatedSurface& surface, unsigned but, const Vec3& x) {
     double least = std::numeric_limits<double>::infinity();
     for (int face = 0; face < 6; ++face) {
-        if (((surface.reached() & ~course.faces) >> face & 1u) == 0) continue;
+        if (((surface.reached() & ~but) >> face & 1u) == 0) continue;
         const Extent& extent = surface.extent();
         least = std::min(least, std::abs(x[face / 2] - (face % 2 == 0 ? extent.min : extent.max)[face / 2]));
     }
@@ -91,7 +91,8 @@ struct ThinPlaces::EdgeLook {
 
     /// The size there [m].
     double at(const Vec3& x) {
-        const double beyond = most / gap_share;
+        constexpr double near = 0.4;  // [of the size] edges that are farther from each other are meshed as they are
+        const double beyond = near * most;
         const double to_edges = tree.least([&](const Extent& box) { return std::sqrt(box.squared_distance(x)); },
                                            [&](std::size_t i) {
                                                const SharpEdges::Segment& other = edges.segments[i];
@@ -100,7 +101,7 @@ struct ThinPlaces::EdgeLook {
                                                           : distance(closest_on_segment(other.a, other.b, x), x);
                                            },
                                            beyond);
-        const double to_faces = distance_to_faces(surface, edges.courses[static_cast<std::size_t>(course)], x);
+        const double to_faces = distance_to_faces(surface, edges.courses[static_cast<std::size_t>(course)].faces, x);
         const double width = std::min(to_edges, to_faces);
         if (!(width < beyond)) return most;
         if (width < narrowest.across) narrowest = {width, to_edges <= to_faces ? Kind::edges : Kind::edge_at_face, x};
@@ -135,7 +136,8 @@ ThinPlaces::ThinPlaces(const TriangulatedSurface& surface, double least, double 
     for (const SharpEdges::Segment& segment : edges.segments) extents.push_back(extent({segment.a, segment.b, segment.b}));
     const BoxTree tree(std::move(extents));
     std::vector<EdgeLook> edge_looks;
-    for (const SharpEdges::Segment& segment : edges.segments) edge_looks.push_back({surface, edges, tree, least, most, coarse, segment.course});
+    for (const SharpEdges::Segment& segment : edges.segments)
+        edge_looks.push_back({surface, edges, tree, least, most, coarse, segment.course});
     for_all(edge_looks.size(), [&](std::size_t e) { edge_looks[e].halve(edges.segments[e].a, edges.segments[e].b); }, 16);
     std::map<int, std::vector<Place>> by_size;
     const auto take = [&](const auto& look) {

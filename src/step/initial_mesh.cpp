@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 #include <vector>
 
 namespace kropla {
@@ -34,13 +35,17 @@ struct Draft {
 void help_surfaces(Draft& made, const Domain& domain, const Snapshot& at, const AdaptOptions& options) {
     constexpr double promised = 6;  // [-] R/r
     constexpr int rounds = 3;       // more brought nothing, where tried
+    constexpr double gain = 0.95;   // [-] of the worst R/r: a round that leaves more is the last
     std::vector<SurfaceOf> surfaces;
     for (std::size_t body = 0; body < domain.bodies.size(); ++body)
         if (const Body& of = domain.bodies[body]; !of.layer)
             surfaces.push_back({region_of_body(body), of.pinned, keep_edges(of).sharp});
+    double worst_before = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
         const std::vector<Tet> all = all_tets(made.mesh);
-        if (worst_aspect_ratio(made.mesh, all) <= promised) return;
+        const double worst = worst_aspect_ratio(made.mesh, all);
+        if (worst <= promised || worst > gain * worst_before) return;
+        worst_before = worst;
         heed(options.watch, "improving surfaces", static_cast<double>(round) / rounds);
         Changes changes;
         for (const SurfaceOf& surface : surfaces) changes += improve_surface(made.mesh, surface, all, options);
