@@ -252,22 +252,37 @@ private:
     }
 
     /// Where free bodies are expected, if they go on as in the step before.
+    /// What the surroundings are like where bodies are, as cells are small there: the mean of all corners of their cells [K].
+    [[nodiscard]] double temperature_around() {
+        if (!given_.heat) return 0;  // nothing depends on it then
+        const Mesh& mesh = state_.moving.reference();
+        double sum = 0, count = 0;
+        for (const Tet t : all_tets(mesh, surroundings))
+            for (const Vertex v : mesh.tets[t]) {
+                sum += temperature()[v];
+                ++count;
+            }
+        return sum / count;
+    }
+
     std::vector<BodyPlace> free_places(double end) {
         free_.clear();
         const MovingMesh& moving = state_.moving;
         const double dt = end - moving.time();
+        if (std::ranges::none_of(given_.free, [](const auto& motion) { return motion.has_value(); })) return {};
+        const FlowRegion& around = *given_.flow->options.regions[0];
+        const double warm = temperature_around(), viscosity = around.viscosity(warm);
         for (std::size_t body = 0; body < given_.free.size(); ++body) {
             if (!given_.free[body]) continue;
             const FreeMotion& motion = *given_.free[body];
-            const FlowRegion& around = *given_.flow->options.regions[0];
             RigidStep& step = free_.emplace_back(body, RigidStep(motion, state_.free[body],
                                                                  weighed(moving.reference(), region_of_body(body), motion.density),
                                                                  given_.domain.bodies[body].shape.centre + state_.free[body].pose.displacement,
                                                                  given_.flow->options.gravity, moving.time(), dt)).second;
-            step.guess_response(around.density(0), around.viscosity(0));
+            step.guess_response(around.density(warm), viscosity);
         }
         if (given_.contact) {
-            contacts_.emplace(given_.domain, *given_.contact, given_.flow->options.regions[0]->viscosity(0), free_, moving.time(), dt);
+            contacts_.emplace(given_.domain, *given_.contact, viscosity, free_, moving.time(), dt);
             contacts_->guess();
         }
         return places();

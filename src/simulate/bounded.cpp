@@ -95,15 +95,22 @@ bool mark_extrema(const Ranks& ranks, const Pattern& pattern, const std::vector<
             after[own] > around.most + allowance.above[row] + negligible)
             next[own] = 1;
     }
+    return mark_with_those_near(ranks, pattern, std::move(next), marked);
+}
+
+bool mark_with_those_near(const Ranks& ranks, const Pattern& pattern, std::vector<char> rows, std::vector<char>& marked) {
+    const auto of_all_ranks = [&] {
+        MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPI_CHAR, MPI_MAX, ranks.communicator);
+    };
     for (int ring = 0; ring < 2; ++ring) {
-        MPI_Allreduce(MPI_IN_PLACE, next.data(), static_cast<int>(next.size()), MPI_CHAR, MPI_MAX, ranks.communicator);
-        spread(rows, next);
+        of_all_ranks();
+        spread(pattern.rows, rows);
     }
-    MPI_Allreduce(MPI_IN_PLACE, next.data(), static_cast<int>(next.size()), MPI_CHAR, MPI_MAX, ranks.communicator);
+    of_all_ranks();
     bool any = false;
     for (std::size_t r = 0; r < marked.size(); ++r) {
-        any = any || (next[r] != 0 && marked[r] == 0);
-        marked[r] = marked[r] != 0 || next[r] != 0;
+        any = any || (rows[r] != 0 && marked[r] == 0);
+        marked[r] = marked[r] != 0 || rows[r] != 0;
     }
     return any;
 }

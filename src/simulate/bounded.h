@@ -47,6 +47,10 @@ std::vector<double> add_diffusion(const Pattern& pattern, const CellSystems& sys
                                 const std::vector<double>& after, const Allowance& allowance, double negligible,
                                 std::vector<char>& marked);
 
+/// Marks these rows, known on the rank that owns them at least, and those up to two couplings away. Returns as above.
+[[nodiscard]] bool mark_with_those_near(const Ranks& ranks, const Pattern& pattern, std::vector<char> rows,
+                                        std::vector<char>& marked);
+
 /// What is exchanged along couplings, for the rows of this rank.
 struct Repair {
     std::vector<double> gained;  // a place for each coupling: what its row gets from its column

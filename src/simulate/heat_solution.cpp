@@ -16,7 +16,8 @@ namespace kropla {
 namespace {
 
 constexpr int quick_passes = 40;   // of what is not linear; if these go to and fro,
-constexpr int sure_passes = 60;    // so many that come nearer from one side, and quick ones from there, and so on
+constexpr int sure_passes = 60;    // so many that come nearer from one side, if no neighbour is pushed away; then rows that do
+                                   //   not settle are made of low order, so that none is, and quick ones from there, and so on
 constexpr int most_passes = 400;   // of both, between two looks at bounds
 constexpr int most_lowerings = 8;  // looks at bounds, before all is of low order
 constexpr double noticeable = 1e-3;      // [-] of the range: a new extremum that is worth a second solution
@@ -111,6 +112,12 @@ void HeatSolution::lower_marked() {
     }
 }
 
+void HeatSolution::lower_unsettled() {
+    std::vector<char> rows(changes_.size());
+    std::ranges::transform(changes_, rows.begin(), [](double change) { return change > settled ? 1 : 0; });
+    if (mark_with_those_near(ranks_, *pattern_, std::move(rows), marked_)) lower_marked();
+}
+
 /// By how much a value may be a new extremum, before it is cared for: what is not linear cannot be repaired.
 double HeatSolution::negligible() const {
     double least = INFINITY, most = -INFINITY;
@@ -139,6 +146,7 @@ void HeatSolution::settle() {
         const double change = solve_once();
         if (linear_ || (change <= settled && about_one)) return;
         if (pass == most_passes) throw SolverError(not_settled(change, pass));
+        if (pass % (quick_passes + sure_passes) == 0) lower_unsettled();
         const bool sure_next = pass % (quick_passes + sure_passes) >= quick_passes;
         if (sure_next && !surely_) falls_at_ = {};
         else if (surely_ && change <= settled) falls_at_ = after_;
@@ -177,13 +185,16 @@ double HeatSolution::solve_to(double tolerance) {
 /// Takes the solution. Returns by how much it differs from the guess, by the largest temperature.
 double HeatSolution::take(const std::vector<double>& solution) {
     double change = 0, largest = 0;
+    changes_.resize(solution.size());
     for (std::size_t r = 0; r < solution.size(); ++r) {
         const Vertex v = vertices()[r];
         const double taken = linear_ || surely_ ? solution[r] : nearest_to_guess(v, solution[r]);
-        change = std::max(change, std::abs(solution[r] - after_[v]));
+        changes_[r] = std::abs(solution[r] - after_[v]);
+        change = std::max(change, changes_[r]);
         largest = std::max(largest, std::abs(solution[r]));
         after_[v] = taken;
     }
+    for (double& of_row : changes_) of_row = largest > 0 ? of_row / largest : 0;
     return largest > 0 ? change / largest : 0;
 }
 
@@ -277,9 +288,10 @@ void HeatSolution::note_capacities() {
         capacity_[static_cast<std::size_t>(pattern_->numbering.row[fixed.vertex])] = 0;
 }
 
-/// What comes from outside may raise a value beyond those around it: by all of it in the vertex's own share.
+/// What comes from outside may raise a value beyond those around it: by all of it in the vertex's own share, as that holds it
+/// at the guess.
 void HeatSolution::allow(std::size_t row, double load, double held) {
-    const double rise = linear_ && held > 0 ? load / held : load == 0 ? 0 : std::copysign(INFINITY, load);
+    const double rise = held > 0 ? load / held : load == 0 ? 0 : std::copysign(INFINITY, load);
     (rise > 0 ? allowance_.above : allowance_.below)[row] += std::abs(rise);
 }
 

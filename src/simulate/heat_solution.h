@@ -41,6 +41,7 @@ private:
 
     void set_fixed();
     void lower_marked();
+    void lower_unsettled();
     [[nodiscard]] double negligible() const;
     void keep_bound(double bound, double side);
 
@@ -68,6 +69,7 @@ private:
     Array<Vertex, double> after_;
     Array<Vertex, double> solved_;  // before it was repaired: what the rows of the system speak of
     std::vector<char> marked_;      // rows of low order
+    std::vector<double> changes_;   // of each row, by the last pass [-] of the largest temperature
     Array<Vertex, char> fresh_;     // that became so last; empty: none has
     CellSystems systems_;
     LinearSystem system_;
