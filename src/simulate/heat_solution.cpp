@@ -17,7 +17,8 @@ namespace {
 
 constexpr int quick_passes = 40;   // of what is not linear; if these go to and fro,
 constexpr int sure_passes = 60;    // so many that come nearer from one side, if no neighbour is pushed away; then rows that do
-                                   //   not settle are made of low order, so that none is, and quick ones from there, and so on
+                                   //   not settle are made of low order, so that none is, conductivities follow by halves, and
+                                   //   quick ones from there, and so on
 constexpr int most_passes = 400;   // of both, between two looks at bounds
 constexpr int most_lowerings = 8;  // looks at bounds, before all is of low order
 constexpr double noticeable = 1e-3;      // [-] of the range: a new extremum that is worth a second solution
@@ -137,20 +138,36 @@ void HeatSolution::keep_bound(double bound, double side) {
     for (std::size_t r = 0; r < values.size(); ++r) after_[vertices()[r]] = values[r];
 }
 
-/// Solves; if the step is not linear, again and again about what came out.
+/// Solves; if the step is not linear, again and again about what came out, by turns as said above.
 void HeatSolution::settle() {
-    surely_ = false;
+    constexpr int looked_at = 10;   // passes, in which changes
+    constexpr double nearing = 0.5;  // fall by this at least where they come to an end
+    surely_ = slowly_ = false;
+    int in_turn = 0;
+    double change_before = INFINITY;
+    bool comes_nearer = false;
     for (int pass = 1;; ++pass) {
         take_as_guess();
         const bool about_one = !surely_ || falls_at_ == after_;  // all is taken as linear about the same temperatures
         const double change = solve_once();
         if (linear_ || (change <= settled && about_one)) return;
         if (pass == most_passes) throw SolverError(not_settled(change, pass));
-        if (pass % (quick_passes + sure_passes) == 0) lower_unsettled();
-        const bool sure_next = pass % (quick_passes + sure_passes) >= quick_passes;
-        if (sure_next && !surely_) falls_at_ = {};
-        else if (surely_ && change <= settled) falls_at_ = after_;
-        surely_ = sure_next;
+        if (++in_turn % looked_at == 0) {
+            comes_nearer = change < nearing * change_before;
+            change_before = change;
+        }
+        if (in_turn < (surely_ ? sure_passes : quick_passes) || comes_nearer) {
+            if (surely_ && change <= settled) falls_at_ = after_;
+            continue;
+        }
+        if (surely_) {
+            lower_unsettled();
+            slowly_ = true;
+        }
+        surely_ = !surely_;
+        falls_at_ = {};
+        in_turn = 0;
+        change_before = INFINITY;
     }
 }
 
@@ -205,7 +222,10 @@ void HeatSolution::take_as_guess() {
     for (Region r : step_.material.indices()) {
         MaterialState& state = step_.material[r];
         if (const Property& k = material(r).conductivity; !k.constant())
-            per_vertex(state.conductivity, [&](Vertex v) { return k(after_[v]); });
+            per_vertex(state.conductivity, [&](Vertex v) {
+                const double there = k(after_[v]);
+                return slowly_ ? 0.5 * (state.conductivity[v] + there) : there;
+            });
         const Enthalpy& h = step_.enthalpy[r];
         if (h.proportional()) continue;
         per_vertex(state.enthalpy, [&](Vertex v) { return h(after_[v]); });

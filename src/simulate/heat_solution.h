@@ -80,6 +80,7 @@ private:
     Allowance allowance_;
     bool linear_;
     bool surely_ = false;             // as take_falls_apart has it
+    bool slowly_ = false;             // conductivities follow temperatures by halves
     Array<Vertex, double> falls_at_;  // temperatures about which falls of slopes are taken as linear; empty: there are none
     int iterations_ = 0, passes_ = 0;
     double error_ = 0;
