@@ -24,7 +24,7 @@ namespace {
 /// The motion of one body over a step.
 struct Travel {
     Shape from, to;
-    double reach;     // [m]
+    double reach;     // [m]; 0 of one that rests
     double far_away;  // from the centre, nothing beyond is in reach [m]
     double grain;     // of places in the body [m]: a power of two
     double sized = 0; // from the centre at either end, no target size changes beyond [m]; 0: where none does beyond reach
@@ -105,7 +105,8 @@ std::vector<Travel> travels(const Domain& domain, const Snapshot& start, double 
             travel.start = t0;
             travel.end = t1;
         }
-        if (graded > reach && moves(travel)) travel.sized = graded + size;
+        if (!moves(travel)) travel.reach = travel.far_away = 0;  // the mesh around what rests is left as it is
+        else if (graded > reach) travel.sized = graded + size;
         result.push_back(std::move(travel));
     }
     return result;

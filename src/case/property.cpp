@@ -52,8 +52,7 @@ double reach(const Expression& f, double start, double step) {
     return good;
 }
 
-Property sampled(const Expression& f, double usual) {
-    const double low = reach(f, usual, -widest), high = reach(f, usual, widest);
+Samples samples_between(const Expression& f, double low, double high) {
     const int parts = std::max(1, static_cast<int>(std::ceil((high - low) / widest)));
     Samples samples;
     samples.add(low, f(low));
@@ -61,7 +60,23 @@ Property sampled(const Expression& f, double usual) {
         const double at = k == parts ? high : low + k * (high - low) / parts;
         add_up_to(f, at, f(at), samples);
     }
-    return {std::move(samples.temperature), std::move(samples.value)};
+    return samples;
+}
+
+/// About `usual`, as far as the expression is good; steps may have passed over where it is not, as at a pole.
+Property sampled(const Expression& f, double usual) {
+    double low = reach(f, usual, -widest), high = reach(f, usual, widest);
+    for (;;) {
+        Samples samples = samples_between(f, low, high);
+        const auto& [temperature, value] = samples;
+        const double was_low = low, was_high = high;
+        for (std::size_t k = 0; k < value.size(); ++k) {
+            if (is_good(value[k])) continue;
+            if (temperature[k] < usual) low = temperature[k + 1];
+            else if (high == was_high) high = temperature[k - 1];
+        }
+        if (low == was_low && high == was_high) return {std::move(samples.temperature), std::move(samples.value)};
+    }
 }
 
 WrittenProperty read_table(const CaseTable& parent, std::string_view key) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace kropla {
@@ -17,6 +18,7 @@ bool is_length(double value) { return value >= least_length && value <= most_len
 /// A value as a refusal shows it.
 std::string shown(const toml::node& node) {
     if (const auto text = node.value_exact<std::string>()) return toml_text(*text);
+    if (const auto whole = node.value_exact<std::int64_t>()) return fmt::format("{}", *whole);
     if (const auto number = node.value<double>(); number && node.is_number())
         return fmt::format("{}", *number);
     if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
@@ -40,6 +42,7 @@ std::string origin(const CaseReading& reading, const toml::source_region& at, co
 
 std::optional<double> finite_number(const toml::node& node) {
     if (!node.is_number()) return {};
+    if (const auto whole = node.value_exact<std::int64_t>()) return static_cast<double>(*whole);  // however large
     const auto number = node.value<double>();
     return number && std::isfinite(*number) ? number : std::nullopt;
 }

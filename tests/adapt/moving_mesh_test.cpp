@@ -4,6 +4,7 @@
 #include "mesh/properties.h"
 #include <kropla/mesh/quality.h>
 #include <kropla/mesh/verify.h>
+#include <kropla/step/initial_mesh.h>
 
 #include <gtest/gtest.h>
 
@@ -101,6 +102,18 @@ void expect_good_crossing(const Domain& domain, std::uint64_t seed, int steps) {
     EXPECT_GT(all.splits, 0);
     EXPECT_GT(all.collapses, 0);
     EXPECT_GT(all.moved, 0);
+}
+
+TEST(MovingMesh, WhatRestsLeavesTheMeshAsItIs) {
+    const Domain domain = small_box({travelling({0, 0, 0.3}, {0, 0, 0.3}, {0.5, 0.5, 0.5})});
+    MovingMesh moving(domain, initial_mesh(domain, 1), 0);
+    (void)step(moving, 0.1);  // what the initial mesh has left is done
+    const Mesh before = moving.reference();
+    for (int i = 0; i < 3; ++i) {
+        (void)step(moving, 0.1);
+        EXPECT_EQ(moving.reference().position, before.position);
+        EXPECT_EQ(moving.reference().tets, before.tets);
+    }
 }
 
 TEST(MovingMesh, ASphereCrossesABox) {

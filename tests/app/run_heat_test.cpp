@@ -125,5 +125,50 @@ TEST(RunHeat, NeedsNoRemoteShell) {
     EXPECT_EQ(std::system(command.c_str()), 0) << contents(folder.path / "err.txt");
 }
 
+/// A body in a box, coarse: with these keys of the body, conditions and materials.
+std::string coarse(const std::string& body, const std::string& rest) {
+    return "[domain]\nmin = [-2, -2, 0]\nmax = [2, 2, 4]\n[[body]]\nname = \"b\"\nshape = \"sphere\"\nradius = 0.8\n" + body +
+           "[size]\nsurface = 0.35\ngrowth = 0.3\nfar = 1\n" + rest +
+           "[heat.region.surroundings]\nconductivity = 0.02\ndensity = 1.6\nspecific_heat = 520\n";
+}
+
+TEST(RunHeat, WhatIsSteadyAroundABodyThatRestsStaysSo) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", coarse("centre = [0, 0, 2.1]\n",
+                                       "[time]\nend = 1\nsteps = 5\n[heat.face]\nz_min = { value = 300 }\nz_max = { value = 400 }\n") +
+                                    "initial = \"steady\"\n[heat.region.b]\nconductivity = 35\ndensity = 70\nspecific_heat = 80\n"
+                                    "initial = \"steady\"\n");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const Table steps = read_table(folder.path / "d/steps.csv");
+    const auto into = numbers(steps, "heat_out_z_max"), out = numbers(steps, "heat_out_z_min");
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        EXPECT_NEAR(out[n], 9.1, 0.5);
+        EXPECT_NEAR(into[n], -out[n], 1e-5 * out[n]);
+    }
+}
+
+TEST(RunHeat, WhatMeltsSettlesInABodyThatAFaceCuts) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", coarse("centre = [0, 0, 0.1]\ncut = true\n", "[time]\nend = 0.2\nsteps = 1\n") +
+                                    "initial = 300\n[heat.region.b]\nconductivity = 35\ndensity = 70\nspecific_heat = 80\n"
+                                    "initial = \"1000+200*x\"\nlatent_heat = 1e5\nsolidus = 900\nliquidus = 1000\n");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const Table steps = read_table(folder.path / "d/steps.csv");
+    EXPECT_LT(std::abs(numbers(steps, "energy_error").back()), 1e-12 * numbers(steps, "energy_integral").back());
+}
+
+TEST(RunHeat, ASmallSourceLiftsNoBoundsWhereHeatIsNotLinear) {
+    const TemporaryFolder folder;
+    write(folder.path / "a.toml", coarse("centre = [0, 0, 0.1]\ncut = true\n",
+                                       "[time]\nend = 0.4\nsteps = 4\n[heat.surface.b]\nflux = 1e-3\n[heat.face]\nz_min = { value = 300 }\n") +
+                                    "initial = 300\n[heat.region.b]\nconductivity = 30\ndensity = 7000\n"
+                                    "specific_heat = { T = [300, 1800], value = [500, 800] }\ninitial = 1900\n");
+    const Outcome ended = kropla_program(folder, "run a.toml --out d");
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    for (const double most : numbers(read_table(folder.path / "d/steps.csv"), "temperature_max_b")) EXPECT_LT(most, 1900 + 1e-7);
+}
+
 }  // namespace
 }  // namespace kropla

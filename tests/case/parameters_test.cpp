@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace kropla {
 namespace {
 
@@ -38,6 +40,22 @@ TEST(Parameters, AreKnownToAllExpressions) {
     ASSERT_EQ(given.parameters.size(), 4u);
     EXPECT_EQ(given.parameters[1].name, "d");
     EXPECT_EQ(given.parameters[1].value, 2e-3);
+}
+
+TEST(Parameters, MayBeIntegersThatNoDoubleHolds) {
+    const Case given = parse_case(std::string(full_case) + "[parameters]\na = 9223372036854775807\n", "case.toml");
+    ASSERT_EQ(given.parameters.size(), 1u);
+    EXPECT_EQ(given.parameters[0].value, 0x1p63);
+}
+
+// Vogel's law has a pole at 150 K, below which it is positive again.
+TEST(Property, OfAnExpressionGoesAsFarAsThatIsPositiveAroundWhatIsUsual) {
+    const Case given = parse_case(replaced(full_case, "conductivity = 0.02", "conductivity = \"1e-3*exp(500/(T-150))\""), "case.toml");
+    const Property& conductivity = given.heat->regions[0].material.conductivity;
+    for (const double t : {200.0, 300.0, 1000.0, 12345.0})
+        EXPECT_NEAR(conductivity(t) / (1e-3 * std::exp(500 / (t - 150))), 1, 2.1e-5) << t;
+    EXPECT_GT(conductivity.temperatures().front(), 150);
+    for (const double value : conductivity.values()) EXPECT_TRUE(std::isfinite(value) && value > 0);
 }
 
 TEST(Parameters, AreKeptInTheCaseAsRunWithTheExpressionsAsWritten) {
