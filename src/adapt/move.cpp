@@ -105,11 +105,25 @@ std::vector<Travel> travels(const Domain& domain, const Snapshot& start, double 
             travel.start = t0;
             travel.end = t1;
         }
-        if (!moves(travel)) travel.reach = travel.far_away = 0;  // the mesh around what rests is left as it is
-        else if (graded > reach) travel.sized = graded + size;
+        if (graded > reach) travel.sized = graded + size;
         result.push_back(std::move(travel));
     }
     return result;
+}
+
+/// Does nothing of the body move? `deforming` is its surface, if it deforms.
+bool rests(const Mesh& mesh, const Travel& travel, const BodySurface* deforming) {
+    if (deforming == nullptr) return !moves(travel);
+    return std::ranges::all_of(deforming->vertices, [&](Vertex v) { return travel.displacement(mesh.position[v]) == Vec3{}; });
+}
+
+/// The mesh around what rests is left as it is.
+void leave_out_resting(const Mesh& mesh, std::span<const BodySurface> deforming, std::vector<Travel>& travels) {
+    for (std::size_t body = 0; body < travels.size(); ++body) {
+        const auto surface = std::ranges::find(deforming, body, &BodySurface::body);
+        if (rests(mesh, travels[body], surface == deforming.end() ? nullptr : &*surface))
+            travels[body].reach = travels[body].far_away = travels[body].sized = 0;
+    }
 }
 
 /// The share of a body's motion that the mesh takes part in at a distance from it. Seen from the body, cells
@@ -382,7 +396,8 @@ void list_and_shrink(const Mesh& mesh, Zone& zone, ZoneMotion& motion) {
 void place_boundary(const Mesh& mesh, const Domain& domain, const MovedBodies& bodies, double t0, double t1, Zone& zone,
                     ZoneMotion& motion) {
     const Snapshot at_start = snapshot(domain, t0, bodies.deforming, mesh.position, bodies.uneven);
-    const std::vector<Travel> travelling = travels(domain, at_start, t0, t1);
+    std::vector<Travel> travelling = travels(domain, at_start, t0, t1);
+    leave_out_resting(mesh, bodies.deforming, travelling);
     reach_out(mesh, travelling, bodies, zone);
     fit(motion, mesh);
     place_bodies(mesh, domain, travelling, bodies.vertices, motion);
