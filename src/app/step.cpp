@@ -251,7 +251,6 @@ private:
         return false;
     }
 
-    /// Where free bodies are expected, if they go on as in the step before.
     /// What the surroundings are like where bodies are, as cells are small there: the mean of all corners of their cells [K].
     [[nodiscard]] double temperature_around() {
         if (!given_.heat) return 0;  // nothing depends on it then
@@ -265,6 +264,7 @@ private:
         return sum / count;
     }
 
+    /// Where free bodies are expected, if they go on as in the step before.
     std::vector<BodyPlace> free_places(double end) {
         free_.clear();
         const MovingMesh& moving = state_.moving;

@@ -34,7 +34,7 @@ struct Draft {
 /// others, with the volume within kept, as far as that helps bad cells at them.
 void help_surfaces(Draft& made, const Domain& domain, const Snapshot& at, const AdaptOptions& options) {
     constexpr double promised = 6;  // [-] R/r
-    constexpr int rounds = 3;       // more brought nothing, where tried
+    constexpr int rounds = 3;       // at most; chosen
     constexpr double gain = 0.95;   // [-] of the worst R/r: a round that leaves more is the last
     std::vector<SurfaceOf> surfaces;
     for (std::size_t body = 0; body < domain.bodies.size(); ++body)

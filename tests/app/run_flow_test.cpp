@@ -238,7 +238,7 @@ TEST(RunFlow, ABodyIsFreeInGasWhoseDensityDependsOnItsTemperature) {
           "[flow.region.surroundings]\ndensity = \"480/T\"\nviscosity = 0.05\n[flow.face]\nz_max = { pressure = 0 }\n");
     const Outcome ended = kropla_program(folder, "run a.toml --out d");
     ASSERT_EQ(ended.code, 0) << ended.err;
-    for (const double rounds : numbers(read_table(folder.path / "d/steps.csv"), "flow_rounds")) EXPECT_LE(rounds, 6);
+    for (const double rounds : numbers(read_table(folder.path / "d/steps.csv"), "flow_rounds")) EXPECT_LE(rounds, 5);
 }
 
 TEST(RunFlow, CutsStepsByCourantNumbers) {

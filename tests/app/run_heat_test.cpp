@@ -132,42 +132,46 @@ std::string coarse(const std::string& body, const std::string& rest) {
            "[heat.region.surroundings]\nconductivity = 0.02\ndensity = 1.6\nspecific_heat = 520\n";
 }
 
-TEST(RunHeat, WhatIsSteadyAroundABodyThatRestsStaysSo) {
+/// What a run of the case has in steps.csv.
+Table steps_of(const std::string& text) {
     const TemporaryFolder folder;
-    write(folder.path / "a.toml", coarse("centre = [0, 0, 2.1]\n",
-                                       "[time]\nend = 1\nsteps = 5\n[heat.face]\nz_min = { value = 300 }\nz_max = { value = 400 }\n") +
-                                    "initial = \"steady\"\n[heat.region.b]\nconductivity = 35\ndensity = 70\nspecific_heat = 80\n"
-                                    "initial = \"steady\"\n");
+    write(folder.path / "a.toml", text);
     const Outcome ended = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(ended.code, 0) << ended.err;
-    const Table steps = read_table(folder.path / "d/steps.csv");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return read_table(folder.path / "d/steps.csv");
+}
+
+TEST(RunHeat, WhatIsSteadyAroundABodyThatRestsStaysSo) {
+    const Table steps = steps_of(coarse("centre = [0, 0, 2.1]\n",
+                                        "[time]\nend = 1\nsteps = 5\n[heat.face]\nz_min = { value = 300 }\nz_max = { value = 400 }\n") +
+                                 "initial = \"steady\"\n[heat.region.b]\nconductivity = 35\ndensity = 70\nspecific_heat = 80\n"
+                                 "initial = \"steady\"\n");
     const auto into = numbers(steps, "heat_out_z_max"), out = numbers(steps, "heat_out_z_min");
+    ASSERT_EQ(out.size(), 5u);
     for (std::size_t n = 0; n < out.size(); ++n) {
-        EXPECT_NEAR(out[n], 9.1, 0.5);
-        EXPECT_NEAR(into[n], -out[n], 1e-5 * out[n]);
+        EXPECT_NEAR(out[n], 8.957, 0.001);
+        EXPECT_NEAR(into[n], -out[n], 1.2e-7 * out[n]);
     }
 }
 
 TEST(RunHeat, WhatMeltsSettlesInABodyThatAFaceCuts) {
-    const TemporaryFolder folder;
-    write(folder.path / "a.toml", coarse("centre = [0, 0, 0.1]\ncut = true\n", "[time]\nend = 0.2\nsteps = 1\n") +
-                                    "initial = 300\n[heat.region.b]\nconductivity = 35\ndensity = 70\nspecific_heat = 80\n"
-                                    "initial = \"1000+200*x\"\nlatent_heat = 1e5\nsolidus = 900\nliquidus = 1000\n");
-    const Outcome ended = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(ended.code, 0) << ended.err;
-    const Table steps = read_table(folder.path / "d/steps.csv");
-    EXPECT_LT(std::abs(numbers(steps, "energy_error").back()), 1e-12 * numbers(steps, "energy_integral").back());
+    const Table steps = steps_of(coarse("centre = [0, 0, 0.1]\ncut = true\n", "[time]\nend = 0.2\nsteps = 1\n") +
+                                 "initial = 300\n[heat.region.b]\nconductivity = 35\ndensity = 70\nspecific_heat = 80\n"
+                                 "initial = \"1000+200*x\"\nlatent_heat = 1e5\nsolidus = 900\nliquidus = 1000\n");
+    const auto error = numbers(steps, "energy_error"), energy = numbers(steps, "energy_integral");
+    ASSERT_EQ(error.size(), 1u);
+    EXPECT_LT(std::abs(error[0]), 1e-12 * energy[0]);
 }
 
 TEST(RunHeat, ASmallSourceLiftsNoBoundsWhereHeatIsNotLinear) {
-    const TemporaryFolder folder;
-    write(folder.path / "a.toml", coarse("centre = [0, 0, 0.1]\ncut = true\n",
-                                       "[time]\nend = 0.4\nsteps = 4\n[heat.surface.b]\nflux = 1e-3\n[heat.face]\nz_min = { value = 300 }\n") +
-                                    "initial = 300\n[heat.region.b]\nconductivity = 30\ndensity = 7000\n"
-                                    "specific_heat = { T = [300, 1800], value = [500, 800] }\ninitial = 1900\n");
-    const Outcome ended = kropla_program(folder, "run a.toml --out d");
-    ASSERT_EQ(ended.code, 0) << ended.err;
-    for (const double most : numbers(read_table(folder.path / "d/steps.csv"), "temperature_max_b")) EXPECT_LT(most, 1900 + 1e-7);
+    const auto most = numbers(steps_of(coarse("centre = [0, 0, 0.1]\ncut = true\n",
+                                              "[time]\nend = 0.4\nsteps = 4\n[heat.surface.b]\nflux = 1e-3\n"
+                                              "[heat.face]\nz_min = { value = 300 }\n") +
+                                       "initial = 300\n[heat.region.b]\nconductivity = 30\ndensity = 7000\n"
+                                       "specific_heat = { T = [300, 1800], value = [500, 800] }\ninitial = 1900\n"),
+                              "temperature_max_b");
+    ASSERT_EQ(most.size(), 4u);
+    for (const double temperature : most) EXPECT_LT(temperature, 1900 + 1e-7);
 }
 
 }  // namespace
